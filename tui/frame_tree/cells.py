@@ -51,7 +51,6 @@ def state(line: TreeLine) -> Words:
 
 
 def age(line: TreeLine) -> Words:
-    """Return for how long nothing has come."""
     heard = heard_of(line)
     if heard is None:
         return "", ""

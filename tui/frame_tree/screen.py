@@ -212,7 +212,6 @@ class FramesScreen(DeckScreen):
         self.table.focus()
 
     def key_escape(self) -> None:
-        """Leave the filter, and show every frame again."""
         self.filter.value = ""
         self.table.focus()
 
@@ -230,7 +229,6 @@ class FramesScreen(DeckScreen):
         self.set_focus(self.filter)
 
     def relate(self) -> None:
-        """Show frames relative to the one at the cursor, or to the root again."""
         self._relative_to = "" if self._relative_to == self.chosen else self.chosen
         self._show()
 

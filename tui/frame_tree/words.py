@@ -148,7 +148,6 @@ SHOWN = 30
 
 
 def fits(line: TreeLine, parts: Sequence[str]) -> bool:
-    """Return whether frame or publishers contain all parts, which are in small letters."""
     heard = (node for one in line.heard for node in (*one.publishers, one.gone))
     text = " ".join((line.frame, *heard)).casefold()
     return all(part in text for part in parts)
@@ -175,7 +174,6 @@ def _wrapped(mark: str, text: str, width: int) -> list[str]:
 
 
 def why_no_frames(deck: Host, update: GraphUpdate | None) -> tuple[str, str]:
-    """Return headline and detail for a screen without any frame."""
     if not deck.feed.opened:
         return _("no lesson is running"), ""
     if update is None or title.starting(deck):

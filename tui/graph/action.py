@@ -143,7 +143,6 @@ class ActionPane(AskPane):
 
     @property
     def can_forget(self) -> bool:
-        """Whether one of Deck's own goals is chosen."""
         return isinstance(self.chosen, Goal)
 
     def forget(self) -> None:

@@ -66,7 +66,6 @@ class AskPane(GraphPane):
                 yield Rows(header=False, classes="asked")
 
     def compose_more(self) -> ComposeResult:
-        """Yield further widgets below the form."""
         yield from ()
 
     form = getters.query_one(YamlForm)
@@ -116,7 +115,6 @@ class AskPane(GraphPane):
 
     @property
     def _type(self) -> str:
-        """The type that is used, empty if what is shown has left the graph."""
         ends = self.ends()
         return ends[0][0] if ends is not None and ends[0] else ""
 
@@ -127,7 +125,6 @@ class AskPane(GraphPane):
         return self.ros2_info() if self.name_shown else ""
 
     def load(self) -> None:
-        """Replace the previous form with that of the current name."""
         if self._form_for:
             self._texts[self._form_for] = self.form.text
         if self._type and self.name_shown != self._form_for:

@@ -120,7 +120,6 @@ _TITLES = {
 
 
 def failures_of(nodes: Iterable[NodeStatus]) -> dict[str, str]:
-    """Return the nodes that have ended for good, by full name, and why."""
     return {f"/{node.name}": node.detail for node in nodes if node.state is NodeState.FAILED}
 
 

@@ -72,7 +72,6 @@ class NodePane(GraphPane):
                 self._read()
 
     def toggle_parameters(self) -> None:
-        """Show the parameters, after reading them again, or hide them."""
         self.toggle_class("-parameters")
         if self.shows_parameters:
             self._read()
@@ -147,7 +146,6 @@ class NodePane(GraphPane):
             words.show(_("it talks to nobody"), _("It neither publishes nor subscribes, serves nor calls anything."))
 
     def first(self) -> Widget:
-        """Return the parameters if nothing else is visible, otherwise the links."""
         return self.links if self.links.display else self.parameters.table
 
 
@@ -198,7 +196,6 @@ def status_of(name: str, nodes: Mapping[str, NodeStatus]) -> NodeStatus | None:
 
 
 def process_words(status: NodeStatus | None) -> str:
-    """Return which of Deck's processes a node is, and the resources it uses."""
     if status is None:
         return _("not started by Deck")
     sign, word, _meaning = state_words(status)

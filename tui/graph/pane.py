@@ -193,9 +193,7 @@ class GraphPane(Vertical, Working):
         self.redraw()
 
     def first(self) -> Widget:
-        """Return the widget to focus when the user enters the detail."""
         return self.query_one(GraphLinks)
 
     def warn(self, words: str) -> None:
-        """Say why something was not done."""
         self.notify(plain(words, LONGEST), severity="warning", markup=False)

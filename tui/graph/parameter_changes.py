@@ -188,7 +188,6 @@ def save(app: App[Any], table: GraphParameters) -> None:
 
 
 def load(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a file, and set the parameters that it has for this node."""
     if not table.node:
         return
     words = _("A file of `ros2 param dump`. What it has for {node} is set.").format(node=plain(table.node, LONGEST))

@@ -64,7 +64,6 @@ def meant(text: str) -> str:
 
 
 def allowed_words(row: ParameterRow) -> str:
-    """Return the range, the step, and whether it can be changed at all."""
     parts, constraints = [], row.constraints
     if row.read_only:
         parts.append(_("read-only"))

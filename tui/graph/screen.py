@@ -113,7 +113,6 @@ class GraphScreen(DeckScreen):
 
     @property
     def pane(self) -> GraphPane | None:
-        """The current detail, None if it does not exist yet."""
         here = self.history.here
         pane = None if here is None else self._panes.get(here.kind)
         return pane if pane is not None and pane.is_mounted else None
@@ -238,7 +237,6 @@ class GraphScreen(DeckScreen):
             self.refresh_bindings()
 
     def _settle(self) -> None:
-        """Tell findings that have held for long enough, whether or not anything arrives."""
         if self.index.settle():
             self.redraw()
 
@@ -321,7 +319,6 @@ class GraphScreen(DeckScreen):
         self.set_focus(self.filter)
 
     def toggle_everything(self) -> None:
-        """Show or hide what belongs to ROS itself."""
         self.index.everything = not self.index.everything
         if self.index.everything:
             # This reads the directories of all packages.

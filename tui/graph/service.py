@@ -250,7 +250,6 @@ class ServicePane(AskPane):
         return any(call.waits for call in self.calls)
 
     def cancel(self) -> None:
-        """Stop waiting for the newest call."""
         call = next((call for call in self.calls if call.waits), None)
         if call is not None:
             call.given_up = True

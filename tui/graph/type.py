@@ -78,7 +78,6 @@ class TypePane(GraphPane):
             self.redraw()
 
     def _users(self) -> Iterator[Row]:
-        """Yield everything that uses the type, as links."""
         update = self.graph_now
         if update is None:
             return
@@ -129,7 +128,6 @@ def _constant(constant: Constant, indent: str, path: str) -> Row:
 
 
 def _told(field: MessageField) -> str:
-    """Return type, default, and the bounds that the name of the type does not include."""
     told = plain(field.type_name)
     if not field.message:
         default = f'"{field.default}"' if isinstance(field.default, str) else typed(field.default)

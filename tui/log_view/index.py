@@ -272,7 +272,6 @@ class LogIndex:
 
     @property
     def rows(self) -> int:
-        """Number of rows that all shown lines take."""
         if self.fold_width is None:
             return len(self.shown)
         return self._ends[-1] if self._ends else 0
@@ -308,7 +307,6 @@ class LogIndex:
             ends.append(end)
 
     def rebuild(self, entries: Sequence[LogEntry]) -> None:
-        """Rebuild from all entries, because the filter or the ring has changed."""
         self.shown, self.found, self._ends, self.longest = [], [], [], 0
         self.extend(entries)
 
@@ -362,7 +360,6 @@ class LineChoice:
 
     @property
     def _span(self) -> tuple[int, int]:
-        """Lowest and highest chosen id."""
         if self.cursor is None or self._anchor is None:
             return 0, -1
         return min(self.cursor, self._anchor), max(self.cursor, self._anchor)

@@ -200,18 +200,15 @@ class LogPane(Vertical, Working):
         self._show_state()
 
     def search(self) -> None:
-        """Ask what to search for; the search runs as the text is typed."""
         self.prompt.ask("search", _("search:"), self.view.log_filter.search)
 
     def find(self, step: int) -> None:
-        """Go to the next (1) or previous (-1) match."""
         if not self.view.log_filter.search:
             self.search()
         elif not self.view.find(step):
             self.app.bell()
 
     def copy(self) -> None:
-        """Copy the chosen lines to the clipboard of the terminal."""
         lines = self.view.chosen_lines()
         if lines:
             self._copy(lines)
@@ -259,7 +256,6 @@ class LogPane(Vertical, Working):
             self.prompt.remark(_("Enter a file name."))
 
     def action_give_up(self) -> None:
-        """Ask no more; a search ends."""
         if self.prompt.kind == "search":
             self._search_for("")
         self._close_prompt()

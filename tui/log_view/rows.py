@@ -45,7 +45,6 @@ class LogColumns:
 
     @property
     def gutter(self) -> int:
-        """Cells in front of the text: the mark of the line, and a blank after each column."""
         return 1 + sum(cells + 1 for cells in (self.time, self.word, self.node) if cells)
 
 

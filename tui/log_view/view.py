@@ -173,7 +173,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self._settle(top)
 
     def set_fold(self, fold: bool) -> None:
-        """Wrap long lines, or show one row of each and shift it sideways."""
         if fold != self.fold:
             self.fold, self._shifted = fold, 0
             self.lay_out()
@@ -186,7 +185,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     @property
     def following(self) -> bool:
-        """Whether the newest line is kept in sight."""
         return self._tail.following
 
     def follow(self) -> None:
@@ -239,7 +237,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     # Choosing and searching
 
     def find(self, step: int) -> bool:
-        """Choose the next (1) or previous (-1) line that contains the search text."""
         shown = self.index.shown
         if not shown:
             return False
@@ -253,11 +250,9 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         return True
 
     def chosen_lines(self) -> list[str]:
-        """The chosen lines, as text with date, severity and node."""
         return exported(self.choice.entries, self.index)
 
     def shown_lines(self) -> list[str]:
-        """All lines that pass the filter, in the same form."""
         return exported(self.index.shown, self.index)
 
     def action_scroll_up(self) -> None:
@@ -267,7 +262,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._step(1, extend=False)
 
     def action_choose(self, step: int) -> None:
-        """Extend the choice by one line, upwards (-1) or downwards (1)."""
         self._step(step, extend=True)
 
     def action_let_go(self) -> None:
@@ -287,7 +281,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self._point_at(self.index.locate(row)[0], extend=event.shift)
 
     def selection_updated(self, selection: Selection | None) -> None:
-        """Pause while text is selected with the mouse."""
         if selection is not None:
             self.pause()
         self.refresh()
@@ -347,7 +340,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         return self.index.shown[place].id if place < len(self.index.shown) else None
 
     def lay_out(self) -> None:
-        """Fit columns and wrapping to the size and the language."""
         width = self.container_size.width - self.scrollbar_size_vertical
         if width >= 1:
             top = self.top_id
@@ -365,7 +357,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.lay_out()
 
     def notify_style_update(self) -> None:
-        """Use the colours of the new theme."""
         super().notify_style_update()
         self._forget()
 
@@ -377,7 +368,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._tail.redraw()
 
     def _forget(self) -> None:
-        """Discard all drawn rows, since they look different now."""
         self._painter = None
         self._strips.clear()
 

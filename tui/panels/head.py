@@ -88,7 +88,6 @@ class HeadView(Drawing):
         self._moving = False
 
     def show(self, pose: HeadReading) -> None:
-        """Show this pose; the head counts as moving while it differs from the previous one."""
         before = self._pose if self._pose is not None and self._pose.is_known else None
         moving = before is not None and pose.is_known and not before.near(pose)
         if (pose, moving) != (self._pose, self._moving):
@@ -127,7 +126,6 @@ class HeadView(Drawing):
         return [*caption, *self._views(pose, width, rows), *words]
 
     def _in_words(self, numbers: Line, state: Line, width: int) -> list[Line]:
-        """Where it looks and whether it is moving; then the command, and the answer to it."""
         told = self._told_lines(width)
         if cells_of(numbers) + cells_of(state) < width:
             return [beside(numbers, state, width), *told]
@@ -219,7 +217,6 @@ class HeadPanel(Panel):
         return {LLM_RESULT}
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest pose and the newest command."""
         drawing = self.query_one(HeadView)
         for sample in update.samples.get(HEAD_STATE, ()):
             pose = head_in(sample.value)

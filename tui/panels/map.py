@@ -110,7 +110,6 @@ def rows(said: Sequence[LegendEntry], width: int, height: int) -> list[Line]:
 
 
 def _foremost(said: Sequence[LegendEntry], count: int) -> list[LegendEntry]:
-    """The `count` most important entries, in reading order."""
     kept = sorted(range(len(said)), key=lambda at: (said[at].rank, at))[:count]
     return [said[at] for at in sorted(kept)]
 
@@ -176,7 +175,6 @@ class RoomMap(Drawing):
         self._scene = Scene(pose)
 
     def show_ray(self, place: str, metres: float | None) -> None:
-        """Show the reading of a sonar; None if there is no such sonar."""
         if metres is None:
             self._rays.pop(place, None)
             return
@@ -190,7 +188,6 @@ class RoomMap(Drawing):
         self._seen = None
 
     def settle(self) -> None:
-        """Draw the new values."""
         if self._scene is None:
             return
         self._scene = Scene(

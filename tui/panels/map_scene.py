@@ -80,7 +80,6 @@ class Viewport:
 
 
 def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
-    """Show all of an extent as large as possible in this many cells."""
     width_m = max(1e-6, extent.right_m - extent.left_m)
     height_m = max(1e-6, extent.top_m - extent.bottom_m)
     # Points on the edge are drawn in the outermost dot.
@@ -116,7 +115,6 @@ class OccupancyGrid:
     def centres(
         self, rows: NDArray[np.float64], columns: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Positions of cells, x and y in metres."""
         along, up = (columns + 0.5) * self.cell_m, (rows + 0.5) * self.cell_m
         cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
         return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
@@ -311,7 +309,6 @@ def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> 
 
 
 def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
-    """Draw everything that moves, the robot last."""
     for place, metres in scene.rays.items():
         _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
     if scene.goal is not None:

@@ -96,7 +96,6 @@ class Panel(Vertical):
         raise NotImplementedError
 
     def keep(self, update: GraphUpdate) -> None:
-        """Take in new values while the panel is hidden."""
         self.show(update)
 
     def take(self, update: GraphUpdate, *, seen: bool = True) -> None:
@@ -148,7 +147,6 @@ def newest(update: GraphUpdate, topic: str) -> Sample | None:
 
 
 def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, float | None]:
-    """Return (trouble, details, age of the newest message) of a topic."""
     row = row_of(update, topic)
     if row is None:
         return Trouble.NO_PUBLISHER, topic, None
@@ -218,7 +216,6 @@ class Joints:
 
     @property
     def placeholder(self) -> Placeholder | None:
-        """What to show instead of values: which joints are received, and which are expected."""
         sample = self._other
         if sample is None:
             return None

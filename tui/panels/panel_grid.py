@@ -204,5 +204,4 @@ def heights(rows: Sequence[Row], height: int, frame: int) -> list[int]:
 
 
 def least(row: Row) -> int:
-    """Return the lines that a row needs within its frame."""
     return max(panel.least for panel in row)

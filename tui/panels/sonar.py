@@ -66,7 +66,6 @@ def zone_of(metres: float, bounds: Bounds = COURSE) -> Zone:
 
 
 def number(metres: float) -> str:
-    """The distance with two decimals, or a sign if it is not a number."""
     if math.isnan(metres):
         return "---"
     if math.isinf(metres):
@@ -119,7 +118,6 @@ def mark_cell(metres: float, width: int) -> int:
 
 
 def scale(width: int, bounds: Bounds) -> Line:
-    """Numbers below the strokes of the bar."""
     cells = [" "] * width
     for metres, text in (
         (0.0, "0"),
@@ -225,7 +223,6 @@ class Sonar(Drawing):
         self.redraw()
 
     def set_bounds(self, bounds: Bounds) -> None:
-        """Show STOP and CLOSE below these distances from now on."""
         if bounds != self._bounds:
             self._bounds = bounds
             self.redraw()

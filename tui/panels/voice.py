@@ -55,7 +55,6 @@ class Heard:
         return _("PCM {seconds} s {levels}").format(seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels)
 
     def and_then(self, later: Heard) -> Heard:
-        """Join two pieces of one sound."""
         levels = (self.levels + later.levels)[-SLICES:]
         return Heard("", self.seconds + later.seconds, levels)
 
@@ -81,7 +80,6 @@ def _text_in(data: bytes) -> str | None:
 
 
 def _levels(samples: NDArray[np.int16]) -> str:
-    """The loudness of each slice of the sound as a column."""
     levels = ""
     for part in np.array_split(samples, SLICES):
         share = 1 - max(QUIETEST_DB, level_dbfs(part.tobytes())) / QUIETEST_DB
@@ -225,7 +223,6 @@ class VoiceView(Drawing):
         return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
 
     def _lead(self, saying: Saying, width: int) -> tuple[Line, int]:
-        """Speaker and time, and the cells that are left for the text."""
         names = {"human": _("human"), "robot": _("robot")}
         name = fit(names[saying.who], max(map(cell_len, names.values())))
         when = f"{clock(saying.time_s, 8)} " if width >= WITH_TIME_FROM else ""

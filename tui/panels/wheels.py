@@ -84,7 +84,6 @@ HALF = "▄", "▀"
 
 
 def chassis(wheels: WheelsReading, columns: int, rows: int) -> list[Line]:
-    """Draw body, axles and four wheels in this many cells."""
     dots = Canvas(columns, rows)
     scale = min(dots.height / LENGTH_M, dots.width / WIDTH_M)
     middle, front = dots.width / 2, (dots.height - scale * WHEELBASE_M) / 2
@@ -218,7 +217,6 @@ def _number(value: float) -> float:
 
 
 def _side(name: str, speed: float, rows: int, look: str, *, right: bool) -> list[Line]:
-    """Name and speed of a wheel, beside the rear wheels."""
     texts = [""] * rows
     words = speed_words(speed)
     texts[rows - 2] = name
@@ -234,7 +232,6 @@ def _level(speed: float, width: int, look: str) -> Line:
 
 
 def number_words(value: float) -> str:
-    """`-0.25`."""
     return figure(value) if math.isfinite(value) else "---"
 
 
@@ -256,7 +253,6 @@ def angle_words(steering_rad: float) -> str:
 
 
 def radius_words(radius_m: float) -> str:
-    """`R 0.46 m`, without a sign: the angle shows the side."""
     if math.isnan(radius_m):
         return "R ---"
     if math.isinf(radius_m):

@@ -103,7 +103,6 @@ def place_words(aim: Aim, frame: str) -> str:
 
 
 def sent_words(aim: Aim, frame: str, listeners: int) -> str:
-    """Return what was published, and how many heard it."""
     where = place_words(aim, frame)
     if listeners:
         return _("Published on {topic}: {where}.").format(topic=aim.kind.topic, where=where)

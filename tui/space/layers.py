@@ -27,7 +27,6 @@ class SpaceLayer:
     """What one topic shows."""
 
     def __init__(self, topic: str, type_name: str, kind: LayerKind) -> None:
-        """Begin without a message, shown as soon as there is one."""
         self.topic = topic
         self.type_name = type_name
         self.on = True

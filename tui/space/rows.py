@@ -84,7 +84,6 @@ def _head(key: str, name: str, rate: str, *, on: bool) -> Row:
 
 
 def _short(name: str, width: int) -> str:
-    """Return a name of at most this many cells; ends differ more than beginnings."""
     name = plain(name)
     return name if cell_len(name) <= width else "…" + name[1 - max(2, width) :]
 

@@ -219,7 +219,6 @@ class SpaceScreen(DeckScreen):
         return ""
 
     def arm(self, kind: AimKind) -> None:
-        """Begin to aim in the middle of the picture, or say why that cannot be."""
         if reason := self.refusal:
             self.notify(reason, severity="warning", markup=False)
             return

@@ -119,7 +119,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
 
     @property
     def pointer_place(self) -> tuple[float, float] | None:
-        """Where the mouse points, in the fixed frame; None if it is elsewhere."""
         return None if self._pointer is None else self.camera.floor_at(*self._pointer, *self.dots)
 
     def show_words(self, headline: str, detail: str = "") -> None:
@@ -316,7 +315,6 @@ def _middle_of(x: float, y: float) -> tuple[float, float]:
 
 
 def _regions(changed: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -> list[Region]:
-    """Return the cells that changed as spans; those close together are one."""
     regions = []
     for row in np.flatnonzero(changed.any(axis=1)).tolist():
         columns = np.flatnonzero(changed[row])

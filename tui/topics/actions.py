@@ -99,7 +99,6 @@ def clear_plot(screen: TopicsScreen) -> None:
 
 
 def _shows_table(screen: TopicsScreen) -> bool | None:
-    """Not while the plot covers everything."""
     return not screen.plot_covers_all
 
 

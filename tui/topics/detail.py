@@ -60,7 +60,6 @@ class TopicHead(Widget):
         self.refresh(layout=True)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """Return the lines that the figures take at this width, plus those above and below."""
         del container, viewport
         return self._count(width)
 
@@ -207,7 +206,6 @@ class TopicDetail(Vertical, Working):
 
     @property
     def as_endpoints(self) -> bool:
-        """Whether the endpoints are shown rather than message or picture."""
         return self.has_class("-endpoints")
 
     def show_as_endpoints(self, endpoints: bool) -> None:
@@ -263,7 +261,6 @@ OURSELVES = "Deck"
 
 
 def figures(row: TopicRow, size_bytes: int | None) -> list[str]:
-    """Rate, bandwidth, age, jitter, latency, losses and size, or why there are none."""
     if row.pictures_from:
         parts = [_("pictures from {topic}").format(topic=plain(row.pictures_from, LONGEST))]
     elif not row.measured:
@@ -298,7 +295,6 @@ def packed(parts: Sequence[str], width: int) -> list[str]:
 
 
 def size_text(size_bytes: int) -> str:
-    """A size with three significant digits and its unit."""
     if size_bytes < KILO:
         return _("{n} B").format(n=size_bytes)
     if size_bytes < KILO * KILO:
@@ -307,7 +303,6 @@ def size_text(size_bytes: int) -> str:
 
 
 def ends(row: TopicRow) -> str:
-    """Who publishes and who subscribes, by name where known."""
     publishers = names(row.published_by, counted=True)
     if not publishers and (row.publishers or not row.own_publishers):
         publishers = ngettext("{n} publisher", "{n} publishers", row.publishers).format(n=row.publishers)

@@ -59,7 +59,6 @@ class TopicEndpoints(VerticalScroll, can_focus=True):
         self._fold()
 
     def watch_show_vertical_scrollbar(self) -> None:
-        """Wrap with or without the scroll bar."""
         self._fold()
 
     def on_show(self) -> None:

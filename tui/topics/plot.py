@@ -71,7 +71,6 @@ class TopicPlot(Drawing):
 
     @property
     def is_full(self) -> bool:
-        """Whether no more fields can be added."""
         return len(self._series) >= len(NAMES)
 
     @property
@@ -123,7 +122,6 @@ class TopicPlot(Drawing):
             self.redraw()
 
     def next_window(self) -> None:
-        """Show a longer window, or the shortest after the longest."""
         at = WINDOWS_S.index(self._window_s)
         self._window_s = WINDOWS_S[(at + 1) % len(WINDOWS_S)]
         self._axis = None
@@ -196,7 +194,6 @@ class TopicPlot(Drawing):
             ends[free[0]] = Ink(series.letter, series.look)
 
     def _times(self, left: int, across: int) -> Line:
-        """Seconds before now below the plot, at round places."""
         text = " " * (left + across + 1)
         ticks_s = _TICKS_S[self._window_s] * (1 if across >= WIDE else 2)
         for tick in range(int(self._window_s / ticks_s) + 1):
@@ -245,7 +242,6 @@ class ValueAxis:
         return [self.step * number for number in range(first, last + 1)]
 
     def label(self, value: float) -> str:
-        """Return a tick with the decimals of its step, or with an exponent if that is long."""
         if abs(value) < self.step / 1e3:
             return "0"
         widest = max(abs(self.low), abs(self.high))
@@ -387,7 +383,6 @@ def legend_in_short(series: Sequence[Series], width: int, title: str) -> list[Li
 
 
 def number_text(number: float | None) -> str:
-    """A number with five significant digits; nan and infinities by name."""
     if number is None:
         return UNKNOWN
     if not math.isfinite(number):

@@ -77,7 +77,6 @@ class History:
         self._numbers[:, at] = np.fmin(low, number), np.fmax(high, number), number
 
     def range(self, end_s: float, window_s: float) -> tuple[float, float] | None:
-        """The lowest and the highest number in the window that ends at this time."""
         _first, (low, high, _last), _broken = self._window(end_s, window_s)
         seen = np.isfinite(low)
         return (float(low[seen].min()), float(high[seen].max())) if seen.any() else None

@@ -139,7 +139,6 @@ class PublishDialog(Dialog[None]):
 
     @property
     def chosen_number(self) -> int | None:
-        """The publication chosen in the list."""
         chosen = self.query_one("#publications", Rows).chosen
         return int(chosen) if self._listed and chosen else None
 
@@ -152,7 +151,6 @@ class PublishDialog(Dialog[None]):
         shown.update(plain(words(), LONGEST))
 
     def _rate_hz(self) -> float | None:
-        """Return the rate; if it is invalid, say what is allowed and return None."""
         try:
             hz = float(self.rate_field.value.replace(",", "."))
         except ValueError:
@@ -198,7 +196,6 @@ class PublishDialog(Dialog[None]):
         return ros2_words.pub(self.topic, self.form.type_name, value, hz)
 
     def publish_once(self) -> None:
-        """Publish the message, and say how many received it."""
         ready = self._ready()
         if ready is not None:
             graph, topic, value = ready
@@ -314,7 +311,6 @@ class PublishDialog(Dialog[None]):
         return None
 
     def _ready(self) -> tuple[GraphLink, str, Mapping[str, Value]] | None:
-        """Return graph, topic and message, or say what is missing and focus it."""
         graph = self.deck.feed.graph
         topic = self.topic
         if graph is None:
@@ -334,7 +330,6 @@ class PublishDialog(Dialog[None]):
         return None
 
     def _look(self) -> None:
-        """Update the list of publications, and whether the robot is held."""
         update = self.deck.feed.update
         publications = () if update is None else update.publications
         if publications != self._listed:

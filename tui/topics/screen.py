@@ -261,7 +261,6 @@ class TopicsScreen(DeckScreen):
         self.table.reorder(replace(order, housekeeping=not order.housekeeping))
 
     def toggle_endpoints(self) -> None:
-        """Show the endpoints of the chosen topic with their QoS, or its message."""
         self.detail.show_as_endpoints(not self.detail.as_endpoints)
         self._keep_pace()
         self.topics_changed()
@@ -299,7 +298,6 @@ class TopicsScreen(DeckScreen):
         self._keep_pace()
 
     def toggle_field(self) -> None:
-        """Add the number at the cursor to the plot, or remove it."""
         echo = self.detail.echo
         field = PlotField(self.table.chosen, echo.at_cursor or ())
         refusal = ""
@@ -317,7 +315,6 @@ class TopicsScreen(DeckScreen):
         return self.detail.echo.paused or (self.plot.paused and self.plot_place != "none")
 
     def toggle_pause(self) -> None:
-        """Pause message and plot, or resume both."""
         paused = not self.paused
         self.detail.echo.pause(paused)
         self.plot.pause(paused and self.plot_place != "none")
@@ -334,7 +331,6 @@ class TopicsScreen(DeckScreen):
     # Display
 
     def _show_message(self, sample: Sample) -> None:
-        """Show a message of the chosen topic; an image as a picture if requested."""
         first = self.detail.sample is None
         self.detail.show_message(sample)
         if is_image(sample):
@@ -355,7 +351,6 @@ class TopicsScreen(DeckScreen):
         return self.is_attached and sample.topic == self.table.chosen and self._shows_picture
 
     def _keep_pace(self) -> None:
-        """Request updates at the rate that the display needs."""
         period_s = LIVELY_S if self._shows_picture else STEADY_S
         if period_s != self.period_s:
             self.period_s = period_s

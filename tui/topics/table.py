@@ -54,7 +54,6 @@ class TopicColumn:
 
 
 def hz_text(hz: float | None) -> str:
-    """A rate with three significant digits."""
     if hz is None:
         return UNKNOWN
     if hz >= WHOLE_FROM:
@@ -63,7 +62,6 @@ def hz_text(hz: float | None) -> str:
 
 
 def bandwidth_text(bytes_per_s: float | None) -> str:
-    """A bandwidth with three significant digits and its unit."""
     if bytes_per_s is None:
         return UNKNOWN
     value, step = bytes_per_s, 0
@@ -215,7 +213,6 @@ class TopicsOrder:
 
     @property
     def falling(self) -> bool:
-        """Whether the highest value comes first."""
         return self.column.falling is not self.reverse
 
     def by(self, column_id: str) -> TopicsOrder:
@@ -271,11 +268,9 @@ class TopicsTable(Rows):
             self.post_message(self.Arranged())
 
     def filter(self, words: str) -> None:
-        """Show only topics whose name or type contains each of these words."""
         self.reorder(replace(self.order, words=words))
 
     def sort_by_next(self) -> None:
-        """Sort by the next one of the columns that are shown."""
         ids = [column.id for column in self._fitting]
         at = ids.index(self.order.column_id) if self.order.column_id in ids else -1
         self.reorder(replace(self.order, column_id=ids[(at + 1) % len(ids)], reverse=False))
@@ -319,7 +314,6 @@ class TopicsTable(Rows):
         super()._place()
 
     def _laid_out(self) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
-        """The columns that there is room for, and every row in them."""
         longest = max((len(row.name) for row in self.shown), default=0)
         fits = fitting(max(1, self.scrollable_size.width - MARK), longest)
         self._fitting = [column for column, _width in fits]

@@ -20,6 +20,7 @@ from textual.widgets import TextArea
 from text.plain import replaced
 
 MARK = "✗"
+PARTS = ("key", "string", "number", "word", "mark", "comment", "bad", "problem", "gutter")
 MARGIN = 2
 """Cells that `TextArea` leaves between a line's number and its text."""
 
@@ -56,10 +57,7 @@ class MarkedEditor(TextArea):
     class TooLong(Message):
         """A paste was rejected because the text would become too long."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        f"marked-editor--{part}"
-        for part in ["key", "string", "number", "word", "mark", "comment", "bad", "problem", "gutter"]
-    }
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"marked-editor--{part}" for part in PARTS}
     DEFAULT_CSS = """
     MarkedEditor {
         border: none; padding: 0; height: 1fr; scrollbar-size: 1 1;
