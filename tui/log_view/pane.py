@@ -26,7 +26,7 @@ from text.i18n import _, localized, ngettext
 from text.os_words import os_reason
 from text.plain import plain
 from tui import clock
-from tui.log_view.rows import grouped
+from tui.log_view.rows import exported, grouped
 from tui.log_view.view import LogView
 from tui.widgets.field import Field
 from tui.widgets.working import Working
@@ -209,14 +209,14 @@ class LogPane(Vertical, Working):
             self.app.bell()
 
     def copy(self) -> None:
-        lines = self.view.chosen_lines()
+        lines = exported(self.view.choice.entries, self.view.index)
         if lines:
             self._copy(lines)
         else:
             self.notify(_("Choose lines first: with up and down, several with Shift."))
 
     def copy_all(self) -> None:
-        self._copy(self.view.shown_lines())
+        self._copy(exported(self.view.index.shown, self.view.index))
 
     def _copy(self, lines: Sequence[str]) -> None:
         text = "\n".join(lines)
@@ -229,8 +229,8 @@ class LogPane(Vertical, Working):
 
     def save(self) -> None:
         """Ask for a file to save to: the chosen lines if there are several, otherwise all shown."""
-        chosen = self.view.chosen_lines()
-        self._lines = chosen if len(chosen) > 1 else self.view.shown_lines()
+        chosen = exported(self.view.choice.entries, self.view.index)
+        self._lines = chosen if len(chosen) > 1 else exported(self.view.index.shown, self.view.index)
         self._refused = None
         count = ngettext("write {count} line to:", "write {count} lines to:", len(self._lines))
         when = datetime.fromtimestamp(clock.now(), timezone.utc).astimezone()

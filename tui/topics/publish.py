@@ -259,9 +259,9 @@ class PublishDialog(Dialog[None]):
         self.publish_at_rate()
 
     @on(TypeField.TypeChosen)
-    def _type_chosen(self, message: TypeField.TypeChosen) -> None:
-        if message.type_name != self.form.type_name:
-            self.form.load(message.type_name)
+    def _type_chosen(self) -> None:
+        if self.type.value != self.form.type_name:
+            self.form.load(self.type.value)
         if self.type.field.has_focus:
             self.form.editor.focus()
 

@@ -100,25 +100,12 @@ class YamlForm(Vertical, Acting, Working):
     class Submitted(Message):
         """The form is valid, and Ctrl+S was pressed."""
 
-        def __init__(self, form: YamlForm, value: Mapping[str, Value]) -> None:
+        def __init__(self, value: Mapping[str, Value]) -> None:
             super().__init__()
-            self.form = form
             self.value = value
 
-        @property
-        def control(self) -> YamlForm:
-            return self.form
-
     class Checked(Message):
-        """The text was checked: `form.error` says what is wrong, None if nothing is."""
-
-        def __init__(self, form: YamlForm) -> None:
-            super().__init__()
-            self.form = form
-
-        @property
-        def control(self) -> YamlForm:
-            return self.form
+        """The text was checked: the form's `error` says what is wrong, None if nothing is."""
 
     BINDINGS: ClassVar = bindings(submit_form)
     DEFAULT_CSS = """
@@ -199,7 +186,7 @@ class YamlForm(Vertical, Acting, Working):
             self.go_to_problem()
             self.app.bell()
         else:
-            self.post_message(self.Submitted(self, value))
+            self.post_message(self.Submitted(value))
 
     def go_to_problem(self) -> None:
         place = None if self.error is None else place_of(self.error)
@@ -279,7 +266,7 @@ class YamlForm(Vertical, Acting, Working):
         place = None if self.error is None else place_of(self.error)
         self.editor.show_problems(() if place is None else (place,))
         self.on_language_changed()
-        self.post_message(self.Checked(self))
+        self.post_message(self.Checked())
 
 
 def _checked(type_name: str, text: str) -> Mapping[str, Value] | Wrong:

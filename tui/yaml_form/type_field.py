@@ -27,10 +27,6 @@ class TypeField(Vertical):
     class TypeChosen(Message):
         """A type was chosen: typed in full, or from the list."""
 
-        def __init__(self, type_name: str) -> None:
-            super().__init__()
-            self.type_name = type_name
-
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "move(1)", show=False),
         Binding("up", "move(-1)", show=False),
@@ -135,7 +131,7 @@ class TypeField(Vertical):
     def _choose(self, type_name: str) -> None:
         if type_name != self._chosen:
             self.set(type_name)
-            self.post_message(self.TypeChosen(type_name))
+            self.post_message(self.TypeChosen())
         else:
             self.close()
 
