@@ -55,10 +55,16 @@ class FieldDialog(Dialog[None]):
     may_change: bool = True
     typing_replaces: ClassVar[bool] = False
 
-    def __init__(self, text: str, take: Take) -> None:
+    def __init__(self, title: str, words: str, text: str, take: Take) -> None:
         super().__init__()
-        self._text, self._take = text, take
+        self._title, self._words, self._text, self._take = title, words, text, take
         self._busy = False
+
+    def title_words(self) -> str:
+        return self._title
+
+    def words(self) -> Content:
+        return Content(self._words)
 
     def compose(self) -> ComposeResult:
         with Vertical(id="dialog"):
@@ -110,24 +116,6 @@ class FieldDialog(Dialog[None]):
         remark.display = bool(words)
 
 
-class PathDialog(FieldDialog):
-    """Asks for the path of a file."""
-
-    def __init__(self, title: str, words: str, node: str, take: Take) -> None:
-        super().__init__(f"{node.strip('/').replace('/', '__')}.yaml", take)
-        self._title, self._words = title, words
-
-    def title_words(self) -> str:
-        return self._title
-
-    def words(self) -> Content:
-        return Content(self._words)
-
-    async def take(self, text: str) -> str:
-        path = text.strip()
-        return await super().take(path) if path else _("Enter a file name.")
-
-
 class ParameterDialog(FieldDialog):
     """Asks for the value of a parameter."""
 
@@ -136,15 +124,13 @@ class ParameterDialog(FieldDialog):
 
     def __init__(self, node: str, row: ParameterRow, apply: Callable[[Value], Awaitable[str]]) -> None:
         """`apply` sets the value; it returns why it was refused, or nothing."""
-        super().__init__(typed(row.value), lambda text: apply(self._value(text)))
+        title = f"{plain(node, LONGEST)} · {plain(row.name, LONGEST)}"
+        super().__init__(title, "", typed(row.value), lambda text: apply(self._value(text)))
         self._node, self._row = node, row
         self.may_change = not row.read_only
 
-    def title_words(self) -> str:
-        return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
-
     def words(self) -> Content:
-        row, title = self._row, self.title_words()
+        row, title = self._row, self._title
         lines = [Content.styled(title, "bold")] if cell_len(title) > LONGEST_TITLE else []
         lines += [Content(plain(_(row.description), LONGEST))] if row.description else []
         lines.append(Content.styled(plain(row.type_name), "$text-muted"))
@@ -184,14 +170,22 @@ def save(app: App[Any], table: GraphParameters) -> None:
         app.notify(_("There are no parameters to save."), severity="warning", markup=False)
         return
     words = _("As `ros2 param dump` writes it, and `ros2 run --params-file` reads it.")
-    app.push_screen(PathDialog(_("Save parameters"), words, table.node, partial(_save, app, table, [])))
+    _ask_path(app, table, _("Save parameters"), words, partial(_save, app, table, []))
 
 
 def load(app: App[Any], table: GraphParameters) -> None:
     if not table.node:
         return
     words = _("A file of `ros2 param dump`. What it has for {node} is set.").format(node=plain(table.node, LONGEST))
-    app.push_screen(PathDialog(_("Load parameters"), words, table.node, partial(_load, app, table)))
+    _ask_path(app, table, _("Load parameters"), words, partial(_load, app, table))
+
+
+def _ask_path(app: App[Any], table: GraphParameters, title: str, words: str, take: Take) -> None:
+    async def take_path(text: str) -> str:
+        return await take(text.strip()) if text.strip() else _("Enter a file name.")
+
+    called = table.node.strip("/").replace("/", "__")
+    app.push_screen(FieldDialog(title, words, f"{called}.yaml", take_path))
 
 
 async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value]) -> str:

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len
-from textual import getters, on
+from textual import getters, on, work
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
@@ -21,7 +21,7 @@ from graph.messages.yaml_text import is_cut
 from graph.observer.requests import Publish, StartPublishing, StopPublishing
 from graph.publishing.outbox import LEAST_HZ, MOST_HZ
 from text import ros2_words
-from text.i18n import _, decimal, localized, ngettext
+from text.i18n import N_, _, decimal, localized, ngettext
 from text.plain import plain
 from text.ros_names import TOPIC_NAME
 from tui.actions import bindings
@@ -195,23 +195,35 @@ class PublishDialog(Dialog[None]):
         hz = rates[0] if rates else None
         return ros2_words.pub(self.topic, self.form.type_name, value, hz)
 
-    def publish_once(self) -> None:
+    @work(group="publish")
+    async def publish_once(self) -> None:
         ready = self._ready()
-        if ready is not None:
-            graph, topic, value = ready
-            self.tell(lambda: _("Publishing…"))
-            future = graph.ask(Publish(topic, self.form.type_name, value))
-            self.run_worker(self._confirm_once(topic, future), group="publish")
+        if ready is None:
+            return
+        graph, topic, value = ready
+        self.tell(lambda: _("Publishing…"))
+        heard = await self._outcome(graph.ask(Publish(topic, self.form.type_name, value)))
+        if heard:
+            self.tell(lambda: _got(heard), "good")
+        elif heard is not None:
+            self.tell(lambda: _("Sent, but nobody listens to {topic}.").format(topic=topic))
 
-    def publish_at_rate(self) -> None:
+    @work(group="publish")
+    async def publish_at_rate(self) -> None:
         """Publish the message periodically, replacing an earlier publication on the same topic."""
         hz = self._rate_hz()
         ready = None if hz is None else self._ready()
-        if hz is not None and ready is not None:
-            graph, topic, value = ready
-            before = [one.number for one in self._listed or () if one.topic == topic]
-            future = graph.ask(StartPublishing(topic, self.form.type_name, value, hz))
-            self.run_worker(self._confirm_rate(topic, hz, before, future), group="publish")
+        if hz is None or ready is None:
+            return
+        graph, topic, value = ready
+        before = [one.number for one in self._listed or () if one.topic == topic]
+        if await self._outcome(graph.ask(StartPublishing(topic, self.form.type_name, value, hz))) is None:
+            return
+        for number in before:
+            graph.ask(StopPublishing(number))
+        words = N_("Publishing to {topic} at {hz} Hz.")
+        self.tell(lambda: _(words).format(topic=topic, hz=decimal(f"{hz:g}")), "good")
+        self._look()
 
     def stop_chosen(self) -> None:
         number = self.chosen_number
@@ -274,30 +286,6 @@ class PublishDialog(Dialog[None]):
         if self.form.error is None and self._said[1] == "bad":
             self.tell(lambda: "")
 
-    async def _confirm_once(self, topic: str, future: Future[int]) -> None:
-        heard = await self._outcome(future)
-        if heard is None:
-            return
-        if heard:
-            self.tell(
-                lambda: ngettext("Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard).format(
-                    n=heard
-                ),
-                "good",
-            )
-        else:
-            self.tell(lambda: _("Sent, but nobody listens to {topic}.").format(topic=topic))
-
-    async def _confirm_rate(self, topic: str, hz: float, before: list[int], future: Future[int]) -> None:
-        if await self._outcome(future) is None:
-            return
-        graph = self.deck.feed.graph
-        for number in before if graph is not None else ():
-            graph.ask(StopPublishing(number))  # type: ignore[union-attr]
-        words = _("Publishing to {topic} at {hz} Hz.")
-        self.tell(lambda: words.format(topic=topic, hz=decimal(f"{hz:g}")), "good")
-        self._look()
-
     async def _outcome(self, future: Future[int]) -> int | None:
         """Wait for the result; if there is none, say why."""
         try:
@@ -349,6 +337,10 @@ class PublishDialog(Dialog[None]):
             if had != self.is_publishing:
                 self.refresh_bindings()
         title.show(self.query_one(TitleBar), self.deck, "topics")
+
+
+def _got(heard: int) -> str:
+    return ngettext("Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard).format(n=heard)
 
 
 def _limits() -> str:
