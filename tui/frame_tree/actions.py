@@ -85,7 +85,7 @@ def copy_transform(screen: FramesScreen) -> None:
     when=lambda screen: screen.has_frames and screen.focused is not screen.filter,
 )
 def filter_frames(screen: FramesScreen) -> None:
-    screen.focus_filter()
+    screen.set_focus(screen.filter)
 
 
 @action(
@@ -111,7 +111,8 @@ async def frames_in_3d(screen: FramesScreen) -> None:
     when=_has_frames,
 )
 def other_way_round(screen: FramesScreen) -> None:
-    screen.turn_round()
+    screen.turned = not screen.turned
+    screen.show_pair()
 
 
 FRAMES_ACTIONS = actions_of(__name__)

@@ -130,7 +130,7 @@ class FramesScreen(DeckScreen):
         self._pairs = FramePairs()
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
-        self._turned = False
+        self.turned = False
         self._able = (False, False, False)
         """Whether a frame is chosen, and there is a finding, and a tree, to act on."""
         self._said: dict[str, list[tuple[str, str]]] = {}
@@ -167,7 +167,7 @@ class FramesScreen(DeckScreen):
         if not source:
             return None
         target = self._relative_to or self._tree.root_of(source)
-        return self._pairs.find(*((source, target) if self._turned else (target, source)))
+        return self._pairs.find(*((source, target) if self.turned else (target, source)))
 
     def on_mount(self) -> None:
         self.table.focus()
@@ -176,7 +176,7 @@ class FramesScreen(DeckScreen):
     def on_session_changed(self, message: SessionChanged) -> None:
         del message
         if self.feed.session is not None:
-            self._update, self._relative_to, self._turned = None, "", False
+            self._update, self._relative_to, self.turned = None, "", False
             self._pairs.clear()
         self._show()
 
@@ -199,7 +199,7 @@ class FramesScreen(DeckScreen):
 
     @on(FrameTable.Highlighted)
     def _cursor_moved(self) -> None:
-        self._show_pair()
+        self.show_pair()
         self._show_findings()
         self.refresh_bindings()
 
@@ -225,16 +225,9 @@ class FramesScreen(DeckScreen):
         pair = self.pair
         return ros2_words.tf2_echo(pair.target, pair.source) if pair else ""
 
-    def focus_filter(self) -> None:
-        self.set_focus(self.filter)
-
     def relate(self) -> None:
         self._relative_to = "" if self._relative_to == self.chosen else self.chosen
         self._show()
-
-    def turn_round(self) -> None:
-        self._turned = not self._turned
-        self._show_pair()
 
     def go_to_finding(self, step: int) -> None:
         """Go to the next frame that something is wrong with, or to the one before."""
@@ -287,7 +280,7 @@ class FramesScreen(DeckScreen):
         looks |= dict.fromkeys(self._wrong, "warn")
         wide = self.size.width >= WIDE_FROM
         self.table.show_tree(self._lines, looks, self._relative_to, wide=wide)
-        self._show_pair()
+        self.show_pair()
         self._show_findings()
         able = (bool(self.chosen), self.has_findings, self.has_frames)
         if able != self._able:
@@ -303,7 +296,7 @@ class FramesScreen(DeckScreen):
         fitting = frozenset(line.frame for line in lines if words.fits(line, parts))
         return self._tree.lines(self._tree.with_ancestors(fitting)), fitting
 
-    def _show_pair(self) -> None:
+    def show_pair(self) -> None:
         pair = self.pair
         room = self.query_one("#frames-pair").scrollable_content_region.width
         lines = [_("no frame")] if pair is None else pair_lines(pair, room)

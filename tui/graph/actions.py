@@ -20,7 +20,7 @@ action: Announce[GraphScreen] = Announce()
     N_("Go into the form of the service or action; Escape comes back to the list."),
     footer=True,
     priority=True,
-    when=lambda screen: screen.ask_pane is not None and screen.shows_pane and screen.is_in_list,
+    when=lambda screen: screen.ask_pane is not None and screen.shows_pane and screen.focused is screen.names,
     shown=lambda screen: screen.ask_pane is not None and not screen.ask_pane.can_cancel,
 )
 def fill_in(screen: GraphScreen) -> None:
@@ -58,7 +58,7 @@ def change_lifecycle(screen: GraphScreen) -> None:
     when=lambda screen: not screen.is_typing,
 )
 def filter_names(screen: GraphScreen) -> None:
-    screen.focus_filter()
+    screen.set_focus(screen.filter)
 
 
 def _shows_live_node(screen: GraphScreen) -> bool | None:

@@ -138,10 +138,6 @@ class GraphScreen(DeckScreen):
         pane = self.node_pane
         return pane is not None and pane.shows_parameters and self.shows_pane
 
-    @property
-    def is_in_list(self) -> bool:
-        return self.focused is self.names
-
     def watch_goals(self) -> set[str]:
         here = self.history.here
         return {here.name} if here is not None and here.kind is GraphKind.ACTION else set()
@@ -314,9 +310,6 @@ class GraphScreen(DeckScreen):
 
     async def ros2_command(self) -> str:
         return "" if self.pane is None else self.pane.ros2_command()
-
-    def focus_filter(self) -> None:
-        self.set_focus(self.filter)
 
     def toggle_everything(self) -> None:
         self.index.everything = not self.index.everything

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from time import monotonic
 from typing import ClassVar
 
@@ -18,7 +17,6 @@ from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
-from tui.log_level import change_log_level, full_name
 from tui.log_view.index import LogFilter
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
@@ -173,15 +171,6 @@ class LogsScreen(DeckScreen):
     def choose(self, chosen: LogFilter) -> None:
         self.pane.view.log_filter = chosen
         self._show_nodes()
-
-    def hear_all(self) -> None:
-        heard = self.pane.view.log_filter.all_nodes()
-        self.choose(replace(heard, minimum=Severity.DEBUG))
-
-    def change_level(self) -> None:
-        name = self.chosen_node
-        if name:
-            self.run_worker(change_log_level(self.app, full_name(self.feed.update, name)))
 
     def toggle_nodes(self) -> None:
         if self.node_list.has_focus:
