@@ -160,12 +160,8 @@ def is_branch(value: Value) -> bool:
     """Whether the value is a message, or a list of messages or lists, rather than a leaf."""
     if isinstance(value, Mapping):
         return True
-    return is_list(value) and bool(value) and isinstance(value[0], (Mapping, list, tuple))
-
-
-def is_list(value: Value) -> TypeGuard[Sequence[Value]]:
-    """Whether the value is an array of something other than numbers."""
-    return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+    is_list = isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+    return is_list and bool(value) and isinstance(value[0], (Mapping, list, tuple))  # type: ignore[index]
 
 
 def is_number(value: Value | np.generic) -> TypeGuard[float | bool | np.generic]:
@@ -212,7 +208,7 @@ def hexadecimal(value: bytes) -> str:
     head = value[:SHOWN_BYTES]
     more = " …" if len(value) > len(head) else ""
     preview = f"  {head.hex(' ')}{more}  {printable(head)}" if head else ""
-    return f"({byte_count(len(value))}){preview}"
+    return f"({ngettext('{n} byte', '{n} bytes', len(value)).format(n=len(value))}){preview}"
 
 
 def printable(value: bytes) -> str:
@@ -246,7 +242,3 @@ def items(count: int) -> str:
 
 def characters(count: int) -> str:
     return ngettext("{n} character", "{n} characters", count).format(n=count)
-
-
-def byte_count(count: int) -> str:
-    return ngettext("{n} byte", "{n} bytes", count).format(n=count)

@@ -167,7 +167,8 @@ class EchoTree(Rows):
     def _flatten(self) -> None:
         if self.message is not None:
             self._lines = echo_lines(self.message, self._folds.setdefault(self._topic, {}).get)
-            rows = [Row(_key(line.path), (Cell(_line_text(line)),)) for line in self._lines]
+            texts = (f"{_margin(line)}{line.label} {line.text}" for line in self._lines)
+            rows = [Row(_key(line.path), (Cell(text),)) for line, text in zip(self._lines, texts, strict=True)]
             self.show([Column("")], rows, near=self._index(self._chosen) or 0)
 
     def _set_open(self, path: Path, opened: bool) -> None:
@@ -227,7 +228,3 @@ def _same_cells(before: str, after: str) -> int:
 def _margin(line: EchoLine) -> str:
     mark = LEAF if line.open is None else OPEN if line.open else CLOSED
     return " " * (INDENT * line.depth) + mark
-
-
-def _line_text(line: EchoLine) -> str:
-    return f"{_margin(line)}{line.label} {line.text}" if line.label else _margin(line) + line.text

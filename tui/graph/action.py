@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.content import Content
@@ -132,14 +131,10 @@ class ActionPane(AskPane):
         """Cancel a goal; one of another client only after confirmation."""
         graph, goal = self.deck.feed.graph, self._to_cancel
         if isinstance(goal, SeenGoal):
-            self.app.push_screen(CancelGoalScreen(goal), partial(self._cancel_of_others, goal))
+            seen = CancelSeenGoal(goal.action, goal.goal_id)
+            self.app.push_screen(CancelGoalScreen(goal), lambda wanted: wanted and graph and graph.ask(seen))
         elif graph is not None and goal is not None:
             graph.ask(CancelGoal(goal.number))
-
-    def _cancel_of_others(self, goal: SeenGoal, wanted: bool | None) -> None:
-        graph = self.deck.feed.graph
-        if graph is not None and wanted:
-            graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
 
     @property
     def can_forget(self) -> bool:

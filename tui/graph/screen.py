@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, cast
 
-from textual import getters, on
+from textual import getters, on, work
 from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import Horizontal
@@ -311,13 +311,11 @@ class GraphScreen(DeckScreen):
     async def ros2_command(self) -> str:
         return "" if self.pane is None else self.pane.ros2_command()
 
-    def toggle_everything(self) -> None:
+    @work(group="load", exit_on_error=False)
+    async def toggle_everything(self) -> None:
         self.index.everything = not self.index.everything
+        self.redraw()
         if self.index.everything:
             # This reads the directories of all packages.
-            self.run_worker(self._find_installed(), group="load", exit_on_error=False)
-        self.redraw()
-
-    async def _find_installed(self) -> None:
-        await self.index.find_installed()
-        self.take(self.feed.update)
+            await self.index.find_installed()
+            self.take(self.feed.update)

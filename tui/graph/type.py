@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from graph.messages.browse import Constant, MessageField, definition
+from graph.messages.browse import MessageField, definition
 from graph.messages.types import UnknownTypeError
 from text import ros2_words
 from text.i18n import N_, _, localized
@@ -119,12 +119,9 @@ def field_rows(type_name: str, at: str = "") -> Iterator[Row]:
             except UnknownTypeError as error:
                 yield heading(f"{indent}  {plain(localized(error.reason), LONGEST)}")
         for constant in part.constants:
-            yield _constant(constant, indent, f"{at}/{part.name}.{constant.name}")
-
-
-def _constant(constant: Constant, indent: str, path: str) -> Row:
-    value = plain(typed(constant.value), LONGEST)
-    return Row(path, (Cell(indent + plain(constant.name), "dim"), Cell(f"= {value}", "dim")))
+            value = plain(typed(constant.value), LONGEST)
+            cells = Cell(indent + plain(constant.name), "dim"), Cell(f"= {value}", "dim")
+            yield Row(f"{at}/{part.name}.{constant.name}", cells)
 
 
 def _told(field: MessageField) -> str:

@@ -121,7 +121,8 @@ class HeadView(Drawing):
         words = self._in_words(numbers, state, width)
         if width < DRAWN_FROM[0] or height < DRAWN_FROM[1]:
             return [beside(numbers, state, width)] if height == 1 else words
-        caption = [_caption(width)] if height >= CAPTION_FROM else []
+        titles = [Ink(fit(title, width // 2), "muted") for title in (_("from above"), _("from right"))]
+        caption = [titles] if height >= CAPTION_FROM else []
         rows = max(0, height - len(words) - len(caption))
         return [*caption, *self._views(pose, width, rows), *words]
 
@@ -164,11 +165,6 @@ class HeadView(Drawing):
         dial.draw(pose.tilt_deg, None if told is None else told.tilt_deg, "second")
         gap = Ink(" " * (width - 2 * columns))
         return [[*one, gap, *other] for one, other in zip(above.lines(), side.lines(), strict=True)]
-
-
-def _caption(width: int) -> Line:
-    half = width // 2
-    return [Ink(fit(_("from above"), half), "muted"), Ink(fit(_("from right"), half), "muted")]
 
 
 class Dial(NamedTuple):

@@ -54,29 +54,20 @@ class Heard:
             return self.text
         return _("PCM {seconds} s {levels}").format(seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels)
 
-    def and_then(self, later: Heard) -> Heard:
-        levels = (self.levels + later.levels)[-SLICES:]
-        return Heard("", self.seconds + later.seconds, levels)
-
 
 def heard(data: bytes, sample_rate_hz: int = RATE_HZ) -> Heard:
     """Read the bytes of a message; any input gives a result that can be shown."""
     if not data:
         return Heard(_("(an empty message)"))
-    text = _text_in(data)
+    text = text_in(data)
     if text is not None:
-        return Heard(text)
+        return Heard(plain(" ".join(text.split()), LONGEST_TEXT))
     if len(data) < LEAST_PCM:
         count = ngettext("{count} byte, not text:", "{count} bytes, not text:", len(data))
         more = "…" if len(data) > SHOWN_BYTES else ""
         return Heard(f"{count.format(count=len(data))} {data[:SHOWN_BYTES].hex(' ')}{more}")
     samples = samples_of(data)
     return Heard("", len(samples) / sample_rate_hz, _levels(samples))
-
-
-def _text_in(data: bytes) -> str | None:
-    text = text_in(data)
-    return None if text is None else plain(" ".join(text.split()), LONGEST_TEXT)
 
 
 def _levels(samples: NDArray[np.int16]) -> str:
@@ -155,9 +146,11 @@ class VoiceView(Drawing):
         """Add a message of bytes with its Unix time: UTF-8 text, 16-bit PCM, or anything else."""
         saying = Saying(who, time_s, heard(data))
         last = next((one for one in reversed(self._sayings) if one.who == who), None)
-        if last is not None and _one_sound(last, saying):
+        in_time = last is not None and abs(time_s - last.time_s) <= SAME_SOUND_S
+        if last is not None and in_time and last.what.is_sound and saying.what.is_sound:
             self._sayings.remove(last)
-            saying = Saying(who, time_s, last.what.and_then(saying.what))
+            levels = (last.what.levels + saying.what.levels)[-SLICES:]
+            saying = Saying(who, time_s, Heard("", last.what.seconds + saying.what.seconds, levels))
         self._sayings.append(saying)
         self.redraw()
 
@@ -166,11 +159,6 @@ class VoiceView(Drawing):
         if (dbfs, missing) != (self._dbfs, self._missing):
             self._dbfs, self._missing = dbfs, missing
             self.redraw()
-
-    def clear(self) -> None:
-        self._sayings.clear()
-        self._dbfs, self._missing = None, False
-        self.refresh()
 
     @property
     def stale(self) -> bool:
@@ -191,17 +179,13 @@ class VoiceView(Drawing):
         return self.has_talk or super().draws
 
     def draw(self, width: int, height: int) -> list[Line]:
-        below = [level_line(self._dbfs, width)] if self._tells_level else []
+        below = [level_line(self._dbfs, width)] if self._dbfs is not None or self._missing else []
         if not self._sayings:
             return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
         if self._placeholder is not None:
             below[:0] = [[Ink(text, "alert")] for text in folded(self._placeholder.detail, width)]
         talk = self._talk(width, max(1, height - len(below)))
         return [*talk, *below][:height]
-
-    @property
-    def _tells_level(self) -> bool:
-        return self._dbfs is not None or self._missing
 
     def _talk(self, width: int, height: int) -> list[Line]:
         if height == 1:
@@ -233,11 +217,6 @@ class VoiceView(Drawing):
 
 def _body(what: Heard) -> str:
     return "muted" if what.is_sound else ""
-
-
-def _one_sound(last: Saying, saying: Saying) -> bool:
-    both = last.what.is_sound and saying.what.is_sound
-    return both and abs(saying.time_s - last.time_s) <= SAME_SOUND_S
 
 
 TYPE = "std_msgs/msg/ByteMultiArray"

@@ -14,7 +14,6 @@ from textual.content import Content
 from textual.widgets import Static
 
 from graph.observer.requests import PreparePublisher, Publish
-from space.drawing.picture import CellPicture, SpaceCamera
 from text import ros2_words
 from text.i18n import N_, _, decimal
 from text.plain import plain
@@ -75,7 +74,7 @@ class SpaceScreen(DeckScreen):
     def compose_body(self) -> ComposeResult:
         with Horizontal(id="space-body"):
             with Vertical(id="space-picture"):
-                yield SpaceView(self._compose_picture, id="space-view")
+                yield SpaceView(lambda *room: self.stage.picture(*room, self.view.aim))
                 yield Static(id="space-status", markup=False)
             yield LayerRows()
         yield Static(id="space-armed", markup=False)
@@ -274,9 +273,6 @@ class SpaceScreen(DeckScreen):
         self.refresh_bindings()
 
     # Display
-
-    def _compose_picture(self, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
-        return self.stage.picture(camera, columns, rows, self.view.aim)
 
     def show(self, *, by_user: bool = False) -> None:
         if not self.is_mounted:

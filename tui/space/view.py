@@ -89,10 +89,8 @@ class SpaceView(OneStyle, Widget, can_focus=True):
     }
     """
 
-    def __init__(
-        self, compose_picture: Callable[[SpaceCamera, int, int], CellPicture], *, id: str | None = None
-    ) -> None:
-        super().__init__(id=id)
+    def __init__(self, compose_picture: Callable[[SpaceCamera, int, int], CellPicture]) -> None:
+        super().__init__()
         self.camera = SpaceCamera()
         self.aim: Aim | None = None
         """What is aimed; None while nothing is armed."""
@@ -287,14 +285,11 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             return
         self._drag = drag._replace(x=spot[0], y=spot[1])
         if drag.aims:
-            self._aim_at(spot, drag)
+            if self.aim is not None and math.dist(spot, drag.begun) > 0:
+                self.aim = self.aim.towards(*self.camera.floor_at(*spot, *self.dots))
+                self.post_message(self.Aimed(done=False))
         else:
             self._move(self.camera.panned(right, down))
-
-    def _aim_at(self, spot: tuple[float, float], drag: _Drag) -> None:
-        if self.aim is not None and math.dist(spot, drag.begun) > 0:
-            self.aim = self.aim.towards(*self.camera.floor_at(*spot, *self.dots))
-            self.post_message(self.Aimed(done=False))
 
     def on_mouse_up(self, event: MouseUp) -> None:
         """End the drag; one that was long enough to give a heading ends the aiming as well."""

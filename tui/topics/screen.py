@@ -337,7 +337,10 @@ class TopicsScreen(DeckScreen):
             if first:
                 self.detail.show_as_picture(True)
             if self._shows_picture:
-                self.detail.show_picture(sample, lambda: self._is_wanted(sample))
+                topic = sample.topic
+                self.detail.show_picture(
+                    sample, lambda: self.is_attached and topic == self.table.chosen and self._shows_picture
+                )
         if first:
             self._keep_pace()
 
@@ -345,10 +348,6 @@ class TopicsScreen(DeckScreen):
     def _shows_picture(self) -> bool:
         in_front = self.detail.front is self.detail.picture and not self.plot_covers_all
         return in_front and not self.detail.echo.paused
-
-    def _is_wanted(self, sample: Sample) -> bool:
-        """Return whether the sample's topic is still the one shown, as a picture."""
-        return self.is_attached and sample.topic == self.table.chosen and self._shows_picture
 
     def _keep_pace(self) -> None:
         period_s = LIVELY_S if self._shows_picture else STEADY_S

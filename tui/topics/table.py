@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -135,14 +136,6 @@ def _number(
     return TopicColumn(id, title, width, text, lambda row: (value(row), ""), True, True, behind=behind)
 
 
-def _age_key(row: TopicRow) -> SortKey:
-    return (float("inf") if row.age_s is None else row.age_s // 1, "")
-
-
-def _lost_key(row: TopicRow) -> float:
-    return -1.0 if row.lost is None else row.lost
-
-
 COLUMNS = (
     TopicColumn("name", N_("Topic"), 0, lambda row: plain(row.name), lambda row: (0, row.name), least=18),
     TopicColumn("type", N_("Type"), 0, type_text, lambda row: (0, " ".join(row.type_names)), least=18),
@@ -151,10 +144,12 @@ COLUMNS = (
     _number("hz", N_("Hz"), 6, lambda row: hz_text(row.hz), lambda row: _figure(row.hz)),
     _number("bandwidth", N_("Bandwidth"), 10, lambda row: bandwidth_text(row.bytes_per_s),
             lambda row: _figure(row.bytes_per_s)),
-    TopicColumn("age", N_("Age"), 8, lambda row: age_text(row.age_s), _age_key, right=True, behind=" "),
+    TopicColumn("age", N_("Age"), 8, lambda row: age_text(row.age_s),
+                lambda row: (math.inf if row.age_s is None else row.age_s // 1, ""), right=True, behind=" "),
     _number("jitter", N_("Jitter"), 8, lambda row: seconds_text(row.jitter_s), lambda row: _figure(row.jitter_s)),
     _number("latency", N_("Latency"), 9, lambda row: seconds_text(row.latency_s), lambda row: _figure(row.latency_s)),
-    _number("lost", N_("Lost"), 8, lambda row: count_text(row.lost), _lost_key, behind=" "),
+    _number("lost", N_("Lost"), 8, lambda row: count_text(row.lost),
+            lambda row: -1.0 if row.lost is None else row.lost, behind=" "),
     TopicColumn("state", N_("State"), 15, state_text, _state_key),
 )  # fmt: skip
 """In the order on the screen."""

@@ -148,7 +148,9 @@ class Drawing(OneStyle, Widget):
         except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
             self._fault = report_fault(self, error)
             return []
-        return [_greyed(line) for line in lines] if self.stale else lines
+        if self.stale:
+            return [[ink if ink.look == "alert" else Ink(ink.text, "muted") for ink in line] for line in lines]
+        return lines
 
     def on_resize(self) -> None:
         width, height = self.size
@@ -202,10 +204,6 @@ class Drawing(OneStyle, Widget):
 
 def _at(lines: Sequence[Line], y: int) -> Line:
     return lines[y] if y < len(lines) else []
-
-
-def _greyed(line: Line) -> Line:
-    return [ink if ink.look == "alert" else Ink(ink.text, "muted") for ink in line]
 
 
 def _difference(before: Line, after: Line, y: int, width: int) -> Region | None:

@@ -220,7 +220,10 @@ class ImageView(OneStyle, Widget):
         self._pace.shown(now_s)
         self._set_scale(picture.scale)
         self._draw(picture.rgb)
-        self._set_caption(picture.caption + self._rate_words(picture.hz, now_s))
+        caption = picture.caption + self._rate_words(picture.hz, now_s)
+        if caption != self.caption:
+            self.caption = caption
+            self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
 
     def _rate_words(self, hz: str, now_s: float) -> str:
         shown = self._pace.limited_hz(now_s)
@@ -252,11 +255,6 @@ class ImageView(OneStyle, Widget):
         regions = [Region(left + column, top + row, cells, 1) for row, column, cells in changed_spans(had, now)]
         if regions:
             self.refresh(*regions)
-
-    def _set_caption(self, caption: str) -> None:
-        if caption != self.caption:
-            self.caption = caption
-            self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
 
     def _set_scale(self, scale: ImageScale | None) -> None:
         if (scale is None) != (self._scale is None):
@@ -368,14 +366,12 @@ def row_segments(picture: Pixels, row: int) -> list[Segment]:
     pairs = (packed[0] << 24) | packed[1]
     starts = np.flatnonzero(np.diff(pairs, prepend=-1))
     ends = np.append(starts[1:], len(pairs))
-    return [_segment(int(pairs[start]), int(end - start)) for start, end in zip(starts, ends, strict=True)]
-
-
-def _segment(pair: int, cells: int) -> Segment:
-    upper, lower = pair >> 24, pair & 0xFFFFFF
-    if upper == lower:
-        return Segment(" " * cells, _style(None, lower))
-    return Segment(UPPER_HALF * cells, _style(upper, lower))
+    segments = []
+    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+        upper, lower = int(pairs[start]) >> 24, int(pairs[start]) & 0xFFFFFF
+        sign, style = (" ", _style(None, lower)) if upper == lower else (UPPER_HALF, _style(upper, lower))
+        segments.append(Segment(sign * (end - start), style))
+    return segments
 
 
 @lru_cache(maxsize=MOST_STYLES)

@@ -59,7 +59,8 @@ def advice(row: TopicRow) -> tuple[str, str]:
     if row.trouble is Trouble.QUIET and "raw" in row.facts:
         return lost_words()
     if row.trouble is Trouble.QUIET and not row.publishers:
-        return _("only Deck itself publishes here"), _what_deck_sent(row)
+        sent = _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
+        return _("only Deck itself publishes here"), sent
     return trouble_words(row.trouble, row.age_s), plain(_way_out(row, row.trouble), LONGEST)
 
 
@@ -109,10 +110,6 @@ def _how_to_install(facts: Mapping[str, str]) -> str:
             "workspace that has it."
         )
     return _("{type}: install the package {package}, or source the workspace that has it.")
-
-
-def _what_deck_sent(row: TopicRow) -> str:
-    return _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
 
 
 def _remark(row: TopicRow) -> str:

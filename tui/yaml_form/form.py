@@ -176,7 +176,9 @@ class YamlForm(Vertical, Acting, Working):
         """Show the form of another type, or `text` in it; the worker ends when it is shown."""
         self.type_name = type_name
         self._loading = True
-        self._forget()
+        self._checked = self._value = self.error = None
+        self.editor.show_problems(())
+        self.on_language_changed()
         return self.run_worker(self._load(type_name, text), group="load", exclusive=True)
 
     def submit(self) -> None:
@@ -251,11 +253,6 @@ class YamlForm(Vertical, Acting, Working):
         found = await asyncio.to_thread(_checked, type_name, text)
         if (type_name, text) == (self.type_name, self.text):
             self._take(text, found)
-
-    def _forget(self) -> None:
-        self._checked = self._value = self.error = None
-        self.editor.show_problems(())
-        self.on_language_changed()
 
     def _take(self, text: str, found: Mapping[str, Value] | Wrong) -> None:
         self._checked = text
