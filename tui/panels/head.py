@@ -120,7 +120,7 @@ class HeadView(Drawing):
         ]
         words = self._in_words(numbers, state, width)
         if width < DRAWN_FROM[0] or height < DRAWN_FROM[1]:
-            return [beside(numbers, state, width)] if height == 1 else words
+            return words
         titles = [Ink(fit(title, width // 2), "muted") for title in (_("from above"), _("from right"))]
         caption = [titles] if height >= CAPTION_FROM else []
         rows = max(0, height - len(words) - len(caption))

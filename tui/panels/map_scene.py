@@ -119,18 +119,6 @@ class OccupancyGrid:
         cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
         return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
 
-    def occupied_at(self, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        east, north = x_m - self.origin.x_m, y_m - self.origin.y_m
-        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
-        columns = np.floor((cos * east + sin * north) / self.cell_m)
-        rows = np.floor((cos * north - sin * east) / self.cell_m)
-        high, wide = self.cells.shape
-        inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
-        found = np.zeros(x_m.shape, dtype=np.bool_)
-        at = rows[inside].astype(np.intp), columns[inside].astype(np.intp)
-        found[inside] = self.cells[at] >= OCCUPIED_FROM
-        return found
-
 
 def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
     """Read an Odometry or a PoseStamped: pose and frame; None if the position is not valid."""
@@ -298,14 +286,12 @@ def grid_step_m(view: Viewport) -> float:
 
 
 def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> None:
-    if occupancy.cell_m * view.dots_per_m <= 1.0:
-        rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
-        x_m, y_m = occupancy.centres(rows.astype(np.float64), columns.astype(np.float64))
-        canvas.dots((x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL)
-        return
-    x, y = np.meshgrid(np.arange(canvas.width) + 0.5, np.arange(canvas.height) + 0.5)
-    stands = occupancy.occupied_at(view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m)
-    canvas.dots(x[stands], y[stands], WALL)
+    rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
+    # As many points of each cell as it takes to fill it.
+    count = max(1, math.ceil(occupancy.cell_m * view.dots_per_m))
+    within = (np.arange(count) + 0.5) / count - 0.5
+    x_m, y_m = occupancy.centres(rows[:, None, None] + within[:, None], columns[:, None, None] + within)
+    canvas.dots((x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL)
 
 
 def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:

@@ -134,7 +134,7 @@ SIDE = 9
 
 
 class WheelsView(Drawing):
-    """Shows a `WheelsReading`: in words from one line on, drawn from above if there is room."""
+    """Shows a `WheelsReading`: in words, drawn from above if there is room."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -155,8 +155,6 @@ class WheelsView(Drawing):
             return []
         if width >= DRAWN_FROM[0] and height >= DRAWN_FROM[1]:
             return self._from_above(wheels, width, height)
-        if height == 1:
-            return [self._one_line(wheels, width)]
         return self._rows(wheels, width)[:height]
 
     def _from_above(self, wheels: WheelsReading, width: int, height: int) -> list[Line]:
@@ -195,21 +193,6 @@ class WheelsView(Drawing):
             head = f"{fit(name, room)} {speed_words(speed)} "
             lines.append([Ink(head, look), *_level(speed, width - cell_len(head), look)])
         return [*lines, self._steering(wheels, width)]
-
-    def _one_line(self, wheels: WheelsReading, width: int) -> Line:
-        speeds = [
-            Ink(_("left") + " " + speed_words(wheels.left_m_s), "accent"),
-            Ink("  "),
-            Ink(_("right") + " " + speed_words(wheels.right_m_s), "second"),
-        ]
-        words = self.stale_words if self.stale else wheels.words
-        word = [Ink(words, "alert" if self.stale else "strong")]
-        if cells_of(speeds) + cells_of(word) >= width:
-            speeds = [
-                Ink(f"{number_words(wheels.left_m_s)} ‖ ", "accent"),
-                Ink(speed_words(wheels.right_m_s), "second"),
-            ]
-        return beside(speeds, word, width)
 
 
 def _number(value: float) -> float:
