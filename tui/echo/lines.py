@@ -99,12 +99,9 @@ def _branch(path: Path, label: str, value: Value, is_open: IsOpen) -> Iterator[E
 
 def _contents(path: Path, value: Value, is_open: IsOpen) -> Iterator[EchoLine]:
     """Return the contents of a leaf that can be opened; nothing if its own line shows all of it."""
-    if isinstance(value, str):
-        if len(value) > CHUNK:
+    if isinstance(value, (str, bytes)):
+        if len(value) > (CHUNK if isinstance(value, str) else HEX_CHUNK):
             yield from _chunks(path, value)
-    elif isinstance(value, bytes):
-        if len(value) > HEX_CHUNK:
-            yield from _hex_dump(path, value)
     elif isinstance(value, (np.ndarray, Sequence)):
         yield from _numbered(path, value, is_open)
 
@@ -124,26 +121,23 @@ def _numbered(
         yield EchoLine((*path, shown), "", text, "note")
 
 
-def _chunks(path: Path, value: str) -> Iterator[EchoLine]:
-    shown = min(len(value), CHUNK * OPENED_ITEMS)
-    for start in range(0, shown, CHUNK):
-        yield EchoLine((*path, start), "", plain(value[start : start + CHUNK]), "text")
-    rest = len(value) - shown
-    if rest:
-        text = ngettext("… {n} more character", "… {n} more characters", rest).format(n=rest)
-        yield EchoLine((*path, shown), "", text, "note")
-
-
-def _hex_dump(path: Path, value: bytes) -> Iterator[EchoLine]:
-    shown = min(len(value), HEX_CHUNK * OPENED_ITEMS)
-    for start in range(0, shown, HEX_CHUNK):
-        row = value[start : start + HEX_CHUNK]
-        text = f"{start:06x}  {row.hex(' '):{3 * HEX_CHUNK}} {printable(row)}"
-        yield EchoLine((*path, start), "", text, "bytes")
-    rest = len(value) - shown
-    if rest:
-        text = ngettext("… {n} more byte", "… {n} more bytes", rest).format(n=rest)
-        yield EchoLine((*path, shown), "", text, "note")
+def _chunks(path: Path, value: str | bytes) -> Iterator[EchoLine]:
+    """Return a long text, or bytes, in lines of their own."""
+    is_text = isinstance(value, str)
+    size = CHUNK if is_text else HEX_CHUNK
+    for start in range(0, min(len(value), size * OPENED_ITEMS), size):
+        piece = value[start : start + size]
+        if isinstance(piece, str):
+            yield EchoLine((*path, start), "", plain(piece), "text")
+        else:
+            text = f"{start:06x}  {piece.hex(' '):{3 * HEX_CHUNK}} {printable(piece)}"
+            yield EchoLine((*path, start), "", text, "bytes")
+    rest = len(value) - size * OPENED_ITEMS
+    if rest > 0:
+        more = ngettext("… {n} more byte", "… {n} more bytes", rest)
+        if is_text:
+            more = ngettext("… {n} more character", "… {n} more characters", rest)
+        yield EchoLine((*path, len(value) - rest), "", more.format(n=rest), "note")
 
 
 SHOWN_CHARACTERS = 400

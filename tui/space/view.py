@@ -20,6 +20,7 @@ from textual.widget import Widget
 
 from space.drawing.paints import Tint, rgb_of
 from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
+from tui.widgets.canvas import spans
 from tui.widgets.words import OneStyle, word_strips
 
 if TYPE_CHECKING:
@@ -32,8 +33,6 @@ ZOOM = 1.25
 PAN_CELLS = 4
 LEAST_DRAG_DOTS = 6.0
 """A shorter way of the mouse is a click, and gives no heading."""
-JUMP = 3
-"""A run of unchanged cells this short is cheaper to redraw than to skip."""
 
 
 class _Drag(NamedTuple):
@@ -151,7 +150,8 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             self.refresh()
             return
         self._picture = now
-        if not self._words[0] and (regions := _regions(now.changed(had))):
+        regions = [Region(column, row, cells, 1) for row, column, cells in spans(now.changed(had))]
+        if not self._words[0] and regions:
             self.refresh(*regions)
 
     def _look_again(self) -> None:
@@ -307,14 +307,3 @@ class SpaceView(OneStyle, Widget, can_focus=True):
 
 def _middle_of(x: float, y: float) -> tuple[float, float]:
     return 2 * math.floor(x) + 1.0, 4 * math.floor(y) + 2.0
-
-
-def _regions(changed: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -> list[Region]:
-    regions = []
-    for row in np.flatnonzero(changed.any(axis=1)).tolist():
-        columns = np.flatnonzero(changed[row])
-        breaks = np.flatnonzero(np.diff(columns) > JUMP)
-        starts = columns[np.concatenate(([0], breaks + 1))].tolist()
-        ends = columns[np.concatenate((breaks, [len(columns) - 1]))].tolist()
-        regions += [Region(a, row, b - a + 1, 1) for a, b in zip(starts, ends, strict=True)]
-    return regions

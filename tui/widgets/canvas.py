@@ -1,4 +1,4 @@
-"""A canvas of braille dots, two by four in every cell, about square on a terminal, and a bar with its scale."""
+"""A canvas of braille dots, two by four in every cell, about square on a terminal, a bar with its scale, and what has changed."""
 
 from __future__ import annotations
 
@@ -129,3 +129,22 @@ def scale_bar(dots_per_m: float) -> Line:
     cells = max(1, round(metres * dots_per_m / 2))
     bar = "├" + "─" * (cells - 2) + "┤" if cells > 1 else "│"
     return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=decimal(f"{metres:g}")), "strong")]
+
+
+JUMP = 4
+"""A run of unchanged cells this short is cheaper to redraw than to skip."""
+
+
+def spans(cells: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+    """Runs of cells, as (row, first column, columns).
+
+    Those that are close together in a row are one: moving the cursor costs bytes too.
+    """
+    found: list[tuple[int, int, int]] = []
+    for row in np.flatnonzero(cells.any(axis=1)).tolist():
+        columns = np.flatnonzero(cells[row])
+        breaks = np.flatnonzero(np.diff(columns) > JUMP)
+        starts = columns[np.concatenate(([0], breaks + 1))].tolist()
+        ends = columns[np.concatenate((breaks, [len(columns) - 1]))].tolist()
+        found.extend((row, a, b - a + 1) for a, b in zip(starts, ends, strict=True))
+    return found

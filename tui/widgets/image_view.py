@@ -27,6 +27,7 @@ from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
 from tui.terminal.bandwidth import Bandwidth, HasBandwidth, PicturePace
+from tui.widgets.canvas import spans
 from tui.widgets.words import OneStyle, cut, in_row, word_strips
 
 if TYPE_CHECKING:
@@ -304,8 +305,6 @@ Pixels: TypeAlias = "NDArray[np.uint8]"
 
 UPPER_HALF = "▀"
 FULL_DEPTH = 8
-JUMP = 4
-"""A run of unchanged cells this short is cheaper to redraw than to skip."""
 MOST_STYLES = 4096
 MOST_COLOURS = 8192
 """Kept for the next picture: three megabytes, and two for the styles."""
@@ -343,20 +342,9 @@ def steadied(before: Pixels, fresh: Pixels, bits: int) -> Pixels:
 
 
 def changed_spans(before: Pixels, after: Pixels) -> list[tuple[int, int, int]]:
-    """Where two pictures of the same shape differ, as (row of cells, first column, columns).
-
-    Differences that are close together in a row form one span: moving the cursor costs bytes too.
-    """
+    """Where two pictures of the same shape differ, as (row of cells, first column, columns)."""
     differ = (before != after).any(axis=2)
-    cells = differ[0::2] | differ[1::2]
-    spans: list[tuple[int, int, int]] = []
-    for row in np.flatnonzero(cells.any(axis=1)):
-        columns = np.flatnonzero(cells[row])
-        breaks = np.flatnonzero(np.diff(columns) > JUMP)
-        starts = columns[np.concatenate(([0], breaks + 1))]
-        ends = columns[np.concatenate((breaks, [len(columns) - 1]))]
-        spans.extend((int(row), int(a), int(b - a + 1)) for a, b in zip(starts, ends, strict=True))
-    return spans
+    return spans(differ[0::2] | differ[1::2])
 
 
 def row_segments(picture: Pixels, row: int) -> list[Segment]:
