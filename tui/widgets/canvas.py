@@ -1,4 +1,4 @@
-"""A canvas of braille dots, two by four in every cell, about square on a terminal, a bar with its scale, and what has changed."""
+"""A canvas of braille dots, two by four in every cell; a bar with its scale; what has changed."""
 
 from __future__ import annotations
 
