@@ -147,7 +147,7 @@ class FramesScreen(DeckScreen):
                     yield Static(markup=False)
 
     table = getters.query_one(FrameTable)
-    filter = getters.query_one("#frames-filter", Input)
+    filter: getters.query_one[Input] = getters.query_one("#frames-filter", Input)
 
     @property
     def chosen(self) -> str:

@@ -132,7 +132,12 @@ class ActionPane(AskPane):
         graph, goal = self.deck.feed.graph, self._to_cancel
         if isinstance(goal, SeenGoal):
             seen = CancelSeenGoal(goal.action, goal.goal_id)
-            self.app.push_screen(CancelGoalScreen(goal), lambda wanted: wanted and graph and graph.ask(seen))
+
+            def answered(wanted: bool | None) -> None:
+                if wanted and graph is not None:
+                    graph.ask(seen)
+
+            self.app.push_screen(CancelGoalScreen(goal), answered)
         elif graph is not None and goal is not None:
             graph.ask(CancelGoal(goal.number))
 

@@ -103,7 +103,7 @@ class GraphScreen(DeckScreen):
 
     # State
 
-    names = getters.query_one(GraphList)
+    names: getters.query_one[GraphList] = getters.query_one(GraphList)
 
     @property
     def is_typing(self) -> bool:

@@ -114,7 +114,7 @@ class LogsScreen(DeckScreen):
             yield LogNodes()
             yield LogPane(LogView(file_of=self.feed.log_file))
 
-    pane = getters.query_one(LogPane)
+    pane: getters.query_one[LogPane] = getters.query_one(LogPane)
     node_list = getters.query_one(LogNodes)
 
     @property

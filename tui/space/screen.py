@@ -74,7 +74,7 @@ class SpaceScreen(DeckScreen):
     def compose_body(self) -> ComposeResult:
         with Horizontal(id="space-body"):
             with Vertical(id="space-picture"):
-                yield SpaceView(lambda *room: self.stage.picture(*room, self.view.aim))
+                yield SpaceView(lambda *seen: self.stage.picture(self.view.aim, *seen))
                 yield Static(id="space-status", markup=False)
             yield LayerRows()
         yield Static(id="space-armed", markup=False)

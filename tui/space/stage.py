@@ -123,7 +123,7 @@ class Stage:
         before, self._followed = self._followed or (camera.x_m, camera.y_m, 0.0), at
         return replace(camera, x_m=camera.x_m + at[0] - before[0], y_m=camera.y_m + at[1] - before[1])
 
-    def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
+    def picture(self, aim: Aim | None, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
         """Return the picture of what was placed last.
 
         The names of frames that matter most come first: what the user has chosen, then what has data.

@@ -108,7 +108,7 @@ class TopicDetail(Vertical, Working):
         yield ImageView()
         yield TopicEndpoints()
 
-    echo = getters.query_one(EchoTree)
+    echo: getters.query_one[EchoTree] = getters.query_one(EchoTree)
     filter = getters.query_one(EchoFilter)
     picture = getters.query_one(ImageView)
     endpoints = getters.query_one(TopicEndpoints)

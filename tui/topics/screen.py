@@ -95,7 +95,7 @@ class TopicsScreen(DeckScreen):
         super().__init__()
         self.table: TopicsTable = TopicsTable()
         self.detail: TopicDetail = TopicDetail()
-        self.plot = TopicPlot()
+        self.plot: TopicPlot = TopicPlot()
         self._rates_s = 0.0
         """When the rates were last shown."""
         self._settling: Timer | None = None
@@ -114,7 +114,7 @@ class TopicsScreen(DeckScreen):
             yield self.detail
             yield self.plot
 
-    filter = getters.query_one("#topics-filter", Input)
+    filter: getters.query_one[Input] = getters.query_one("#topics-filter", Input)
 
     def watch_topics(self) -> set[str]:
         """The chosen topic; of one with images only its messages as a tree."""

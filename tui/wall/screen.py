@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from textual import on
 from textual.app import ComposeResult
 from textual.widgets import Static
 
@@ -61,7 +62,7 @@ class WallScreen(DeckScreen):
 
     def __init__(self) -> None:
         super().__init__()
-        self.grid = PanelGrid()
+        self.grid: PanelGrid = PanelGrid()
         self._names: tuple[str, ...] = ()
 
     def compose_body(self) -> ComposeResult:
@@ -79,12 +80,11 @@ class WallScreen(DeckScreen):
         front = self.feed.front is self
         return set().union(*(panel.followed() for panel in self.grid.panels if front))
 
-    async def on_mount(self) -> None:
-        await self._choose(None)
+    def on_mount(self) -> None:
         self._show_state()
 
-    async def on_session_changed(self, message: SessionChanged) -> None:
-        del message
+    @on(SessionChanged)
+    async def _session_changed(self) -> None:
         await self._choose(None)
 
     async def on_graph_changed(self, message: GraphChanged) -> None:
