@@ -202,7 +202,8 @@ def hexadecimal(value: bytes) -> str:
     head = value[:SHOWN_BYTES]
     more = " …" if len(value) > len(head) else ""
     preview = f"  {head.hex(' ')}{more}  {printable(head)}" if head else ""
-    return f"({ngettext('{n} byte', '{n} bytes', len(value)).format(n=len(value))}){preview}"
+    count = ngettext("{n} byte", "{n} bytes", len(value)).format(n=len(value))
+    return f"({count}){preview}"
 
 
 def printable(value: bytes) -> str:
