@@ -214,6 +214,8 @@ class DrivenPath:
 
 
 FRONT, REAR = "front", "rear"
+APART_M, APART_RAD = 0.05, math.radians(5)
+"""Differences from which on the true pose is shown beside the odometry."""
 BODY = Body()
 MAX_RANGE_M = SimulatedSonar().farthest_m
 """The length of a cone in which nothing was detected."""
@@ -239,17 +241,29 @@ _GRID_CELLS = 4
 """Minimum distance between the dots of the grid, in cells."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Scene:
-    """Everything that moves, that is all but the room and the path."""
+    """All that is to be seen."""
 
     pose: Pose
+    frame: str = ""
     truth: Pose | None = None
+    """The true pose of a simulated robot, if it is published."""
     goal: Place | None = None
     rays: dict[str, float] = field(default_factory=dict)
     """`FRONT` and `REAR` to metres according to REP-117."""
     bounds: Bounds = COURSE
     """Which of these distances count as near."""
+    occupancy: OccupancyGrid | None = None
+    path: DrivenPath = field(default_factory=DrivenPath)
+
+    @property
+    def truth_apart(self) -> Pose | None:
+        """The true pose, if it differs from the pose."""
+        if self.truth is None:
+            return None
+        turned = abs(math.remainder(self.truth.heading_rad - self.pose.heading_rad, math.tau))
+        return self.truth if self.pose.distance_to(self.truth) >= APART_M or turned >= APART_RAD else None
 
 
 def ray_origin(pose: Pose, place: str) -> tuple[Point, float]:
@@ -295,12 +309,16 @@ def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> 
 
 
 def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
+    draw_grid(canvas, view, grid_step_m(view))
+    if scene.occupancy is not None:
+        draw_occupancy(canvas, view, scene.occupancy)
+    scene.path.draw(canvas, view)
     for place, metres in scene.rays.items():
         _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
     if scene.goal is not None:
         canvas.sign(view.place(scene.goal.x_m, scene.goal.y_m), GOAL_SIGN, GOAL)
-    if scene.truth is not None:
-        truth, believed = robot_corners(view, scene.truth), robot_corners(view, scene.pose)
+    if scene.truth_apart is not None:
+        truth, believed = robot_corners(view, scene.truth_apart), robot_corners(view, scene.pose)
         if max(map(math.dist, truth, believed)) >= _APART:
             canvas.outline(truth, TRUTH)
     _draw_robot(canvas, view, scene.pose)
