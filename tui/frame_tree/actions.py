@@ -31,7 +31,7 @@ def relative_to(screen: FramesScreen) -> None:
 
 
 def _has_findings(screen: FramesScreen) -> bool | None:
-    return True if screen.has_findings else None
+    return True if screen.findings else None
 
 
 @action(
@@ -42,7 +42,7 @@ def _has_findings(screen: FramesScreen) -> bool | None:
     means="next",
     footer=True,
     when=_has_findings,
-    shown=lambda screen: screen.has_findings,
+    shown=lambda screen: bool(screen.findings),
     label=lambda _: N_("Finding"),
 )
 def next_finding(screen: FramesScreen) -> None:
@@ -82,7 +82,7 @@ def copy_transform(screen: FramesScreen) -> None:
     footer=True,
     priority=True,
     anywhere=True,
-    when=lambda screen: screen.has_frames and screen.focused is not screen.filter,
+    when=lambda screen: bool(screen.tree.frames) and screen.focused is not screen.filter,
 )
 def filter_frames(screen: FramesScreen) -> None:
     screen.set_focus(screen.filter)

@@ -124,9 +124,9 @@ class FramesScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self._update: GraphUpdate | None = None
-        self._tree = FrameTree(())
+        self.tree = FrameTree(())
         self._lines: list[TreeLine] = []
-        self._findings: list[FrameFinding] = []
+        self.findings: list[FrameFinding] = []
         self._pairs = FramePairs()
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
@@ -154,19 +154,11 @@ class FramesScreen(DeckScreen):
         return frame_of(self.table.chosen) if self.is_mounted and self._lines else ""
 
     @property
-    def has_frames(self) -> bool:
-        return bool(self._tree.frames)
-
-    @property
-    def has_findings(self) -> bool:
-        return bool(self._findings)
-
-    @property
     def pair(self) -> FramePair | None:
         source = self.chosen
         if not source:
             return None
-        target = self._relative_to or self._tree.root_of(source)
+        target = self._relative_to or self.tree.root_of(source)
         return self._pairs.find(*((source, target) if self.turned else (target, source)))
 
     def on_mount(self) -> None:
@@ -254,19 +246,19 @@ class FramesScreen(DeckScreen):
 
     @property
     def _wrong(self) -> frozenset[str]:
-        return frozenset(frame for one in self._findings for frame in one.frames)
+        return frozenset(frame for one in self.findings for frame in one.frames)
 
     def _show(self) -> None:
         # Without its parts it is just being opened or closed.
         if not self.query("#frames-filter"):
             return
         update = self._update
-        self._tree = FrameTree(() if update is None else update.frames)
+        self.tree = FrameTree(() if update is None else update.frames)
         self._lines, fitting = self._fitting()
-        self._findings = [] if update is None else findings_in(update, self._tree)
-        if self._relative_to not in self._tree.frames:
+        self.findings = [] if update is None else findings_in(update, self.tree)
+        if self._relative_to not in self.tree.frames:
             self._relative_to = ""
-        empty = not self._tree.frames and not self._findings
+        empty = not self.tree.frames and not self.findings
         self.query_one("#frames-body").display = not empty
         note = self.query_one("#frames-empty", Static)
         note.display = empty
@@ -282,19 +274,19 @@ class FramesScreen(DeckScreen):
         self.table.show_tree(self._lines, looks, self._relative_to, wide=wide)
         self.show_pair()
         self._show_findings()
-        able = (bool(self.chosen), self.has_findings, self.has_frames)
+        able = (bool(self.chosen), bool(self.findings), bool(self.tree.frames))
         if able != self._able:
             self._able = able
             self.refresh_bindings()
 
     def _fitting(self) -> tuple[list[TreeLine], frozenset[str]]:
         """Return what the filter leaves of the tree, and the frames in it that match themselves."""
-        lines = self._tree.lines()
+        lines = self.tree.lines()
         parts = self.filter.value.casefold().split()
         if not parts:
-            return lines, self._tree.frames
+            return lines, self.tree.frames
         fitting = frozenset(line.frame for line in lines if words.fits(line, parts))
-        return self._tree.lines(self._tree.with_ancestors(fitting)), fitting
+        return self.tree.lines(self.tree.with_ancestors(fitting)), fitting
 
     def show_pair(self) -> None:
         pair = self.pair
@@ -309,7 +301,7 @@ class FramesScreen(DeckScreen):
 
     def _show_findings(self) -> None:
         room = self.query_one("#frames-findings").scrollable_content_region.width
-        lines = words.finding_lines(self._findings, self.chosen, room)
+        lines = words.finding_lines(self.findings, self.chosen, room)
         self._say("#frames-findings > Static", [(text, MEANINGS[look]) for text, look in lines])
 
     def _say(self, where: str, lines: list[tuple[str, str]]) -> None:

@@ -9,8 +9,8 @@ from textual import getters
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.content import Content
-from textual.geometry import Size
 from textual.widget import Widget
+from textual.widgets import Static
 
 from graph.data import Sample, TopicRow, Trouble
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
@@ -32,53 +32,37 @@ LONGEST_ARRAY = 2000
 """Elements of an array that are copied: the clipboard of a terminal (OSC 52) is small."""
 
 
-class TopicHead(Widget):
-    """Name and type, figures and endpoints: as many lines as there is room for.
+class TopicHead(Static):
+    """Name and type, figures and endpoints; on a low screen the first line of figures only.
 
     A name that is longer than a line continues in the next: it is shown in full nowhere else.
     """
 
     DEFAULT_CSS = """
     TopicHead {
-        height: auto; width: 1fr; background: $panel; color: $foreground;
+        height: auto; min-height: 1; width: 1fr; background: $panel; color: $foreground;
         text-wrap: nowrap; text-overflow: ellipsis;
     }
     """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._texts: tuple[str, str, tuple[str, ...], str] = ("", "", (), "")
+    _texts: tuple[str, str, tuple[str, ...], str] = ("", "", (), "")
 
     def show(self, name: str, type_name: str, figures: Sequence[str], below: str) -> None:
         texts = (plain(name), plain(type_name), tuple(figures), below)
         if texts != self._texts:
-            before = self._count()
             self._texts = texts
-            self.refresh(layout=self._count() != before)
+            self.on_resize()
 
     def on_resize(self) -> None:
-        self.refresh(layout=True)
-
-    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        del container, viewport
-        return self._count(width)
-
-    def render(self) -> Content:
         name, type_name, parts, below = self._texts
         width = max(1, self.size.width)
         *above, last = chop_cells(name, width) or [""]
         lines = [Content.styled(part, "bold") for part in above]
         lines.append(Content.assemble((last, "bold"), "  ", (type_name, "dim")))
-        lines += [Content(text) for text in (*packed(parts, width), below) if text]
-        return Content("\n").join(lines)
-
-    def _count(self, width: int | None = None) -> int:
-        name, _type, parts, below = self._texts
-        width = max(1, width or self.size.width)
-        named = len(chop_cells(name, width)) or 1
-        if self.screen.has_class("-low") or self.screen.has_class("-flat"):
-            return named + 1
-        return named + len(packed(parts, width)) + bool(below)
+        more = [Content(text) for text in (*packed(parts, width), below) if text]
+        is_low = self.screen.has_class("-low") or self.screen.has_class("-flat")
+        content = Content("\n").join([*lines, *(more[:1] if is_low else more)])
+        if content != self.content:
+            self.update(content)
 
 
 class TopicDetail(Vertical, Working):
@@ -201,8 +185,7 @@ class TopicDetail(Vertical, Working):
         return self.has_class("-picture")
 
     def show_as_picture(self, picture: bool) -> None:
-        if picture != self.as_picture:
-            self.set_class(picture, "-picture")
+        self.set_class(picture, "-picture")
 
     @property
     def as_endpoints(self) -> bool:
