@@ -82,7 +82,7 @@ def copy_transform(screen: FramesScreen) -> None:
     footer=True,
     priority=True,
     anywhere=True,
-    when=lambda screen: bool(screen.tree.frames) and screen.focused is not screen.filter,
+    when=lambda screen: bool(screen.frame_tree.frames) and screen.focused is not screen.filter,
 )
 def filter_frames(screen: FramesScreen) -> None:
     screen.set_focus(screen.filter)

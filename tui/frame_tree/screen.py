@@ -124,7 +124,7 @@ class FramesScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self._update: GraphUpdate | None = None
-        self.tree = FrameTree(())
+        self.frame_tree: FrameTree = FrameTree(())
         self._lines: list[TreeLine] = []
         self.findings: list[FrameFinding] = []
         self._pairs = FramePairs()
@@ -158,7 +158,7 @@ class FramesScreen(DeckScreen):
         source = self.chosen
         if not source:
             return None
-        target = self._relative_to or self.tree.root_of(source)
+        target = self._relative_to or self.frame_tree.root_of(source)
         return self._pairs.find(*((source, target) if self.turned else (target, source)))
 
     def on_mount(self) -> None:
@@ -253,12 +253,12 @@ class FramesScreen(DeckScreen):
         if not self.query("#frames-filter"):
             return
         update = self._update
-        self.tree = FrameTree(() if update is None else update.frames)
+        self.frame_tree = FrameTree(() if update is None else update.frames)
         self._lines, fitting = self._fitting()
-        self.findings = [] if update is None else findings_in(update, self.tree)
-        if self._relative_to not in self.tree.frames:
+        self.findings = [] if update is None else findings_in(update, self.frame_tree)
+        if self._relative_to not in self.frame_tree.frames:
             self._relative_to = ""
-        empty = not self.tree.frames and not self.findings
+        empty = not self.frame_tree.frames and not self.findings
         self.query_one("#frames-body").display = not empty
         note = self.query_one("#frames-empty", Static)
         note.display = empty
@@ -274,19 +274,19 @@ class FramesScreen(DeckScreen):
         self.table.show_tree(self._lines, looks, self._relative_to, wide=wide)
         self.show_pair()
         self._show_findings()
-        able = (bool(self.chosen), bool(self.findings), bool(self.tree.frames))
+        able = (bool(self.chosen), bool(self.findings), bool(self.frame_tree.frames))
         if able != self._able:
             self._able = able
             self.refresh_bindings()
 
     def _fitting(self) -> tuple[list[TreeLine], frozenset[str]]:
         """Return what the filter leaves of the tree, and the frames in it that match themselves."""
-        lines = self.tree.lines()
+        lines = self.frame_tree.lines()
         parts = self.filter.value.casefold().split()
         if not parts:
-            return lines, self.tree.frames
+            return lines, self.frame_tree.frames
         fitting = frozenset(line.frame for line in lines if words.fits(line, parts))
-        return self.tree.lines(self.tree.with_ancestors(fitting)), fitting
+        return self.frame_tree.lines(self.frame_tree.with_ancestors(fitting)), fitting
 
     def show_pair(self) -> None:
         pair = self.pair
