@@ -62,7 +62,6 @@ class EchoTree(Rows):
         super().__init__(header=False)
         self._topic = ""
         self.message: Mapping[str, Value] | None = None
-        """The message that is shown."""
         self._waiting: Mapping[str, Value] | None = None
         """The newest message that came while it was paused."""
         self.paused = False
@@ -72,7 +71,6 @@ class EchoTree(Rows):
         self._marks: Mapping[Path, str] = {}
         """Letters after the keys of lines, by path."""
         self._words = ("", "")
-        """Why there is no message."""
 
     def show_message(self, topic: str, message: Mapping[str, Value]) -> None:
         """Show a message of a topic; a different topic ends a pause."""

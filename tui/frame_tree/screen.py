@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 STATE, AGE = 11, 7
 NARROW, WIDE = 18, 30
-"""Width of the publisher."""
 BETWEEN = "\0"
 """Between parent and frame in the key of a row: in no name."""
 

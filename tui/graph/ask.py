@@ -49,7 +49,6 @@ class AskPane(GraphPane):
     def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self._texts: dict[str, str] = {}
-        """Maps a name to the text that was in its form."""
         self._could_cancel = False
         self._form_for = ""
 

@@ -67,7 +67,6 @@ class PlaceHistory:
 
     def __init__(self) -> None:
         self.kind = GraphKind.NODE
-        """The kind that is listed."""
         self.chosen: dict[GraphKind, str] = {}
         self._been: list[GraphPlace] = []
 
@@ -137,9 +136,7 @@ class GraphEntry(NamedTuple):
     """Its type, or for a type the number of its users."""
     housekeeping: bool = False
     label: str = ""
-    """What is listed in place of the name."""
     remark: str = ""
-    """What is listed beside it if there is room."""
     meaning: str = ""
     """Of its colour, as in `tui.widgets.rows.Cell`."""
 
@@ -151,7 +148,6 @@ class GraphIndex:
         self.everything = False
         """Whether what belongs to ROS itself is listed."""
         self.listed: dict[GraphKind, list[GraphEntry]] = {kind: [] for kind in LISTED}
-        """Everything of each kind."""
         self.findings: tuple[GraphFinding, ...] = ()
         """What is wrong with the graph, once it has held for long enough; the worst first."""
         self._lasting = LastingFindings(NORMS)

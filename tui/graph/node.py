@@ -218,7 +218,6 @@ MEANINGS = {
     "cleanup": N_("let go of all that configure took"),
     "shutdown": N_("end for good; only a restart brings it back"),
 }
-"""What the transitions of a lifecycle do."""
 
 
 def lifecycle_of(update: GraphUpdate | None, node: str) -> LifecycleRow | None:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from tui.session.feed import Feed
 
 LONGEST = 300
-"""Characters of a text that are shown."""
 ROOM_FOR_NAMES = 0.55
 SETTLED_S = 0.12
 """How long a choice must stand before what it needs is loaded: that imports its package."""
@@ -72,7 +71,6 @@ class GraphList(Rows):
     def __init__(self) -> None:
         super().__init__(header=False)
         self._listed: tuple[tuple[GraphEntry, bool], ...] = ()
-        """Each entry, and whether it still exists."""
         self._kind = GraphKind.NODE
 
     @property

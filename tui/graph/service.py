@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 USUAL_S = f"{ANSWER_WITHIN_S:g}"
 LEAST_S, MOST_S = 0.1, 3600.0
 MOST_CALLS = 50
-"""Calls of one service that are kept."""
 TICK_S = 0.5
 """How often the waiting time is updated."""
 
@@ -134,7 +133,6 @@ class ServicePane(AskPane):
     def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self._calls: dict[str, list[ServiceCall]] = {}
-        """Those of each service, the newest first."""
         self._number = 0
         self._timeouts: dict[str, str] = {}
         """Maps a service to the text in its time-out field."""

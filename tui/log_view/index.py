@@ -38,10 +38,8 @@ class LogEntry:
     """A line, or a mark for missing lines."""
 
     id: int
-    """Increases in order of arrival."""
     node: str
     rank: int
-    """Rank of the severity."""
     time_s: float
     text: str
     """The text without control characters."""
@@ -346,7 +344,6 @@ class LineChoice:
     def __init__(self, index: LogIndex) -> None:
         self.cursor: int | None = None
         self._anchor: int | None = None
-        """Where the choice began."""
         self._index = index
 
     def move(self, entry_id: int, *, extend: bool) -> None:

@@ -74,7 +74,6 @@ def head_in(value: Mapping[str, Any]) -> HeadReading | None:
 
 CAPTION_FROM = 10
 DRAWN_FROM = (22, 6)
-"""Columns and lines from which on the two views are drawn."""
 
 
 class HeadView(Drawing):

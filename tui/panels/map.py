@@ -133,7 +133,6 @@ def _packed(said: Sequence[LegendEntry], width: int) -> list[Line]:
 MOST_ROWS = 5
 """Maximum number of lines of the legend below the map."""
 LEGEND = 28
-"""Width of the legend beside the map."""
 SIDE_WORTH = 0.9
 """A map may be smaller by this factor for a legend beside it, which says more."""
 FIELD_FROM = (16, 3)
@@ -231,7 +230,6 @@ class MapPanel(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._pose_topic = ""
-        """The topic of the pose; empty until there is one."""
         self._heard_s = -math.inf
         self._placeholder: Placeholder | None = None
 

@@ -21,7 +21,6 @@ Row: TypeAlias = "list[Panel]"
 BESIDE_FROM = 52
 """Width from which on two panels stand side by side."""
 TWICE = 2
-"""Clicks that enlarge a panel."""
 
 
 class PanelGrid(Container, can_focus=True):

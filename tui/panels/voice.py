@@ -32,7 +32,6 @@ LEAST_PCM = 64
 """In bytes; anything shorter is not audible."""
 SLICES = 8
 QUIETEST_DB, LOUDEST_DB = -60.0, 0.0
-"""Ends of the bar."""
 LEVELS = "▁▂▃▄▅▆▇█"
 
 
@@ -138,20 +137,20 @@ class VoiceView(Drawing):
 
     def __init__(self) -> None:
         super().__init__()
-        self._sayings: deque[Saying] = deque(maxlen=KEPT)
+        self.sayings: deque[Saying] = deque(maxlen=KEPT)
         self._dbfs: float | None = None
         self._missing = False
 
     def hear(self, who: Speaker, data: bytes, time_s: float) -> None:
         """Add a message of bytes with its Unix time: UTF-8 text, 16-bit PCM, or anything else."""
         saying = Saying(who, time_s, heard(data))
-        last = next((one for one in reversed(self._sayings) if one.who == who), None)
+        last = next((one for one in reversed(self.sayings) if one.who == who), None)
         in_time = last is not None and abs(time_s - last.time_s) <= SAME_SOUND_S
         if last is not None and in_time and last.what.is_sound and saying.what.is_sound:
-            self._sayings.remove(last)
+            self.sayings.remove(last)
             levels = (last.what.levels + saying.what.levels)[-SLICES:]
             saying = Saying(who, time_s, Heard("", last.what.seconds + saying.what.seconds, levels))
-        self._sayings.append(saying)
+        self.sayings.append(saying)
         self.redraw()
 
     def show_level(self, dbfs: float | None, *, missing: bool = False) -> None:
@@ -167,20 +166,16 @@ class VoiceView(Drawing):
 
     @property
     def has_value(self) -> bool:
-        return bool(self._sayings) or self._dbfs is not None or self._missing
-
-    @property
-    def has_talk(self) -> bool:
-        return bool(self._sayings)
+        return bool(self.sayings) or self._dbfs is not None or self._missing
 
     @property
     def draws(self) -> bool:
         """Whether to draw: the conversation is not hidden by remarks about unreadable messages."""
-        return self.has_talk or super().draws
+        return bool(self.sayings) or super().draws
 
     def draw(self, width: int, height: int) -> list[Line]:
         below = [level_line(self._dbfs, width)] if self._dbfs is not None or self._missing else []
-        if not self._sayings:
+        if not self.sayings:
             return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
         if self._placeholder is not None:
             below[:0] = [[Ink(text, "alert")] for text in folded(self._placeholder.detail, width)]
@@ -189,11 +184,11 @@ class VoiceView(Drawing):
 
     def _talk(self, width: int, height: int) -> list[Line]:
         if height == 1:
-            newest = self._sayings[-1]
+            newest = self.sayings[-1]
             lead, room = self._lead(newest, width)
             return [[*lead, Ink(fit(newest.what.words, room).rstrip(), _body(newest.what))]]
         lines: list[Line] = []
-        for saying in reversed(self._sayings):
+        for saying in reversed(self.sayings):
             lines[:0] = self._saying_lines(saying, width)
             if len(lines) >= height:
                 return lines[-height:]
@@ -282,4 +277,4 @@ class VoicePanel(Panel):
             return
         # The course's own microphone does not report a level.
         there = microphone is not None and microphone.publishers > 0
-        talk.show_level(None, missing=not there and talk.has_talk)
+        talk.show_level(None, missing=not there and bool(talk.sayings))

@@ -128,9 +128,7 @@ def speed_bar(speed_m_s: float, most_m_s: float, rows: int, look: str) -> list[L
 MOST_M_S = 0.5
 """A speed of this many m/s fills the bar; a faster wheel stretches the scale."""
 DRAWN_FROM = (30, 8)
-"""Columns and lines from which on the chassis is drawn."""
 SIDE = 9
-"""Cells for `-0.25 m/s`."""
 
 
 class WheelsView(Drawing):

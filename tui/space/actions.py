@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from text.i18n import N_, _
 from tui.actions.action import Announce, actions_of
 from tui.frame.actions.view import open_view
-from tui.space.aiming import AimKind
+from tui.space.aiming import GOAL, INITIAL
 
 if TYPE_CHECKING:
     from tui.space.screen import SpaceScreen
@@ -100,7 +100,7 @@ def toggle_layer(screen: SpaceScreen) -> None:
     footer=True,
 )
 def arm_goal(screen: SpaceScreen) -> None:
-    screen.arm(AimKind.GOAL)
+    screen.arm(GOAL)
 
 
 @action("space.only", "o", N_("Only this"), N_("Hide all layers but the selected one."), means="only this")
@@ -147,7 +147,7 @@ def fixed_frame(screen: SpaceScreen) -> None:
     N_("Aim where the robot is now, for localization on a map, as a goal is aimed."),
 )
 def arm_initial_pose(screen: SpaceScreen) -> None:
-    screen.arm(AimKind.INITIAL)
+    screen.arm(INITIAL)
 
 
 SPACE_ACTIONS = actions_of(__name__)

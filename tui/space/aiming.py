@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robot.topics import GOAL_POSE, INITIAL_POSE
 from space.drawing.paints import Tint
@@ -25,19 +24,15 @@ ARROW_DOTS, CROSS_DOTS = 26.0, 7.0
 HEADING_STEP_RAD = math.radians(15)
 
 
-class AimKind(Enum):
-    """What can be aimed: topic and type."""
+class AimKind(NamedTuple):
+    """What can be aimed."""
 
-    GOAL = (GOAL_POSE, "geometry_msgs/msg/PoseStamped")
-    INITIAL = (INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped")
+    topic: str
+    type_name: str
 
-    @property
-    def topic(self) -> str:
-        return self.value[0]
 
-    @property
-    def type_name(self) -> str:
-        return self.value[1]
+GOAL = AimKind(GOAL_POSE, "geometry_msgs/msg/PoseStamped")
+INITIAL = AimKind(INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped")
 
 
 @dataclass(frozen=True)
@@ -77,14 +72,14 @@ class Aim:
             "orientation": {"x": x, "y": y, "z": z, "w": w},
         }
         header: dict[str, Value] = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
-        if self.kind is AimKind.GOAL:
+        if self.kind is GOAL:
             return {"header": header, "pose": pose}
         covariance = [COVARIANCE.get(place, 0.0) for place in range(36)]
         return {"header": header, "pose": {"pose": pose, "covariance": covariance}}
 
 
 def armed_words(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str, str]) -> str:
-    what = _("GOAL") if aim.kind is AimKind.GOAL else _("INITIAL POSE")
+    what = _("GOAL") if aim.kind is GOAL else _("INITIAL POSE")
     where = place_words(aim, frame)
     heard = ", ".join(listeners) if listeners else _("nobody listens")
     how = _("Press, drag, let go: published. Or arrows, Ctrl+arrows, {enter}. {escape} leaves.").format(

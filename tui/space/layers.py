@@ -37,9 +37,7 @@ class SpaceLayer:
         self.refused = ""
         """Why the newest message cannot be drawn."""
         self.apart = ""
-        """Why what it shows cannot be placed."""
         self.frame = ""
-        """The frame of what came last."""
         self.heard = False
 
     @property

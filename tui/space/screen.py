@@ -25,7 +25,7 @@ from tui.frame.screen import DeckScreen
 from tui.panels.panel import row_of
 from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.space.actions import SPACE_ACTIONS, disarm, publish_aim
-from tui.space.aiming import LONGEST, Aim, AimKind, armed_words, sent_words
+from tui.space.aiming import GOAL, LONGEST, Aim, AimKind, armed_words, sent_words
 from tui.space.layers import CLOUD
 from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
@@ -245,7 +245,7 @@ class SpaceScreen(DeckScreen):
             self.notify(reason, severity="warning", markup=False)
             return
         sent = graph.ask(Publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed)))
-        if aim.kind is AimKind.GOAL:
+        if aim.kind is GOAL:
             self.stage.sent = fixed, aim
         self._aim_changed()
         self.run_worker(self._confirm(sent, aim, fixed), group="sent")

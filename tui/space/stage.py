@@ -29,14 +29,12 @@ LEAST_M = 2.0
 """Less than this is never made to fill the picture."""
 
 
-def _mounts() -> dict[str, tuple[str, Transform]]:
-    """Where the sonars of the course are, for robots that do not publish it."""
-    front, rear = SONAR_FRAMES.values()
-    ahead, behind = BODY.length_m - BODY.behind_m, -BODY.behind_m
-    return {
-        front: (BASE, Transform((ahead, 0.0, 0.0))),
-        rear: (BASE, Transform.from_rpy((behind, 0.0, 0.0), (0.0, 0.0, math.pi))),
-    }
+_FRONT, _REAR = SONAR_FRAMES.values()
+MOUNTS = {
+    _FRONT: (BASE, Transform((BODY.length_m - BODY.behind_m, 0.0, 0.0))),
+    _REAR: (BASE, Transform.from_rpy((-BODY.behind_m, 0.0, 0.0), (0.0, 0.0, math.pi))),
+}
+"""Where the sonars of the course are, for robots that do not publish it."""
 
 
 class Stage:
@@ -47,7 +45,6 @@ class Stage:
         self.layers = SpaceLayers()
         self.show_frames = True
         self.frames_why = ""
-        """Which frames are not joined to the fixed one."""
         self.wanted_fixed = ""
         """The fixed frame that the user has chosen; empty for the robot's root."""
         self.follow = ""
@@ -56,7 +53,7 @@ class Stage:
         """Where it was when the camera was moved last."""
         self.sent: tuple[str, Aim] | None = None
         """The goal published last, and its frame, until the graph shows it."""
-        self._placer = Placer(_mounts())
+        self._placer = Placer(MOUNTS)
         self._shapes: list[Shape] = []
         self._frames: dict[str, Transform] = {}
 

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 PAINTED = ("text", "muted", "accent", "second", "good", "warn", "bad", "free", "wall", "maybe")
 ZOOM = 1.25
-"""The factor of one step."""
 PAN_CELLS = 4
 LEAST_DRAG_DOTS = 6.0
 """A shorter way of the mouse is a click, and gives no heading."""

@@ -81,7 +81,6 @@ class TopicDetail(Vertical, Working):
         super().__init__()
         self._row: TopicRow | None = None
         self.sample: Sample | None = None
-        """The message that is shown."""
         self._newest: Sample | None = None
         """The newest message, whether or not it matches the expression."""
 

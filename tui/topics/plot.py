@@ -341,7 +341,6 @@ def _join(top: list[float], bottom: list[float], start: tuple[int, float], end: 
 FIGURE = 9
 LEAST_NAME = 18
 FIGURES = 5
-"""Significant digits."""
 HUGE, TINY = 1e6, 1e-4
 
 

@@ -49,7 +49,6 @@ LOOK_S = 0.25
 DONE_WITHIN_S = 8.0
 """Time limit; a new publisher may wait four seconds for its subscribers."""
 LONGEST_ARRAY = 1000
-"""Elements of an array that are copied into the form."""
 
 
 class PublishDialog(Dialog[None]):

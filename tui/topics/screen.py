@@ -97,7 +97,6 @@ class TopicsScreen(DeckScreen):
         self.detail: TopicDetail = TopicDetail()
         self.plot: TopicPlot = TopicPlot()
         self._rates_s = 0.0
-        """When the rates were last shown."""
         self._settling: Timer | None = None
         self._offered_with_message = False
         """Whether the keys were last updated with a message on the screen."""

@@ -152,7 +152,6 @@ COLUMNS = (
             lambda row: -1.0 if row.lost is None else row.lost, behind=" "),
     TopicColumn("state", N_("State"), 15, state_text, _state_key),
 )  # fmt: skip
-"""In the order on the screen."""
 
 _EXTRA = frozenset({"jitter", "latency", "lost"})
 """All or none of them, if there is room to spare: they are shown above the message too."""
@@ -196,7 +195,6 @@ class TopicsOrder:
 
     column_id: str = "name"
     reverse: bool = False
-    """Whether the order is the reverse of the column's own."""
     words: str = ""
     """All of them must occur in the topic's name or type."""
     housekeeping: bool = False

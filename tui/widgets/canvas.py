@@ -117,7 +117,6 @@ def rectangle(centre: Point, width: float, length: float, angle_rad: float) -> l
 BAR_M = (1, 2, 5)
 """First digits of the length of a scale bar."""
 BAR_CELLS = 12
-"""Maximum length of the scale bar."""
 
 
 def scale_bar(dots_per_m: float) -> Line:

@@ -76,7 +76,6 @@ class Drawing(OneStyle, Widget):
         self._placeholder: Placeholder | None = None
         self._styles: dict[str, Style] = {}
         self._drawn_in = Size(0, 0)
-        """The size for which the lines were drawn."""
         self._fault = ""
         """Why the values cannot be drawn, empty if they can."""
 

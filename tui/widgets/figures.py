@@ -6,7 +6,6 @@ from text.figures import figure, whole
 from text.i18n import _
 
 UNKNOWN = "–"
-"""Shown if there is no figure."""
 WHOLE_FROM = 100
 MILLI = 1e-3
 MICRO = 1e-6

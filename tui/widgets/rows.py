@@ -106,7 +106,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._rows: tuple[Row, ...] = ()
         self._chosen = ""
         self._moved = False
-        """Whether the user has chosen a row."""
 
     def show(self, columns: Sequence[Column], rows: Sequence[Row], *, near: int = 0) -> None:
         """Show these rows in these columns; texts must be harmless and have no line breaks.

@@ -142,7 +142,6 @@ class YamlForm(Vertical, Acting, Working):
         """What is wrong with the text that was checked last."""
         self._value: Mapping[str, Value] | None = None
         self._checked: str | None = None
-        """The text that was checked."""
         self._timer: Timer | None = None
         self._loading = False
 
