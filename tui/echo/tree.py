@@ -6,7 +6,7 @@ A line is redrawn from the first character that has changed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
@@ -17,12 +17,10 @@ from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
 
+from graph.data import Value
 from tui.echo.lines import EchoLine, Path, echo_lines
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.words import cut, word_strips
-
-if TYPE_CHECKING:
-    from graph.data import Value
 
 OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
 INDENT = 2

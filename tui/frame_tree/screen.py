@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import getters, on
 from textual.app import ComposeResult
@@ -24,10 +24,6 @@ from tui.frame_tree.words import FramePair, FramePairs, pair_lines, pair_text, p
 from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row, Rows
-
-if TYPE_CHECKING:
-    from graph.frames.tree import TreeLine
-
 
 STATE, AGE = 11, 7
 NARROW, WIDE = 18, 30

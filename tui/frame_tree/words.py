@@ -12,7 +12,7 @@ from rich.cells import cell_len
 
 from graph.data import FrameRow, GraphUpdate, Trouble
 from graph.frames.book import FRAME_TOPICS
-from graph.frames.findings import by_whom
+from graph.frames.findings import FrameFinding, by_whom
 from space.buffer import NoTransformError, TransformBuffer
 from space.transform import Transform
 from text import ros2_words
@@ -21,12 +21,11 @@ from text.plain import plain
 from text.ros_names import TF, TF_STATIC
 from text.sentences import reason_of
 from tui.frame import title
+from tui.frame.host import Host
 from tui.widgets.trouble import advice
 
 if TYPE_CHECKING:
-    from graph.frames.findings import FrameFinding
     from graph.frames.tree import TreeLine
-    from tui.frame.host import Host
 
 
 LONGEST = 60

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
+from typing import Any, ClassVar
 
+from textual.binding import BindingType
 from textual.content import Content
 
 from graph.data import Goal, GoalStatus, SeenGoal
@@ -15,17 +18,9 @@ from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.dialogs.dialog import Dialog, answers
-from tui.graph.ask import AskPane
+from tui.graph.ask import Answer, AskPane
 from tui.graph.pane import LONGEST
 from tui.widgets.rows import Cell, Column, Row
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from concurrent.futures import Future
-
-    from textual.binding import BindingType
-
-    from tui.graph.ask import Answer
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),

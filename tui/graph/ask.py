@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 from textual import getters
+from textual.app import ComposeResult
 from textual.containers import Container, Vertical
 from textual.widget import Widget
 from textual.widgets import Static
@@ -18,10 +19,7 @@ from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Column, Row, Rows
 from tui.yaml_form.form import YamlForm, submit_form
 
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    Answer = tuple[str, str, "Mapping[str, Any] | tuple[str, str]"]
+Answer: TypeAlias = "tuple[str, str, Mapping[str, Any] | tuple[str, str]]"
 
 
 class AskPane(GraphPane):

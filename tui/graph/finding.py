@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from textual.app import ComposeResult
 from textual.content import Content
 from textual.widgets import Static
 
@@ -15,9 +14,6 @@ from text.plain import plain
 from tui.graph.index import GraphIndex, GraphKind, GraphPlace, head_words
 from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
 from tui.widgets.name_head import NameHead
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 LONGEST = 600
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from textual import getters, on
+from textual.app import App, ComposeResult
 from textual.widget import Widget
 
 from graph.data import GraphUpdate, NodeRow
@@ -27,9 +28,6 @@ from tui.log_level import change_log_level
 from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
 from tui.widgets.rows import Row, Rows
-
-if TYPE_CHECKING:
-    from textual.app import App, ComposeResult
 
 
 class NodePane(GraphPane):

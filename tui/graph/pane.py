@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 from textual.containers import Vertical
 from textual.timer import Timer
@@ -14,12 +13,10 @@ from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import Host, host_of
 from tui.graph.index import GraphEntry, GraphKind, GraphPlace
+from tui.session.feed import Feed
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
-
-if TYPE_CHECKING:
-    from tui.session.feed import Feed
 
 LONGEST = 300
 ROOM_FOR_NAMES = 0.55

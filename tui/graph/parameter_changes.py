@@ -6,10 +6,11 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
 from textual import on
+from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
@@ -27,9 +28,6 @@ from tui.dialogs.ros2 import copy_dialog_as_ros2
 from tui.frame.host import host_of
 from tui.graph.parameters import GraphParameters, allowed_words, meant, typed
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from textual.app import App, ComposeResult
 
 LONGEST = 400
 LONGEST_TITLE = 64

@@ -6,9 +6,10 @@ import asyncio
 import re
 from collections.abc import Iterable
 from concurrent.futures import Future
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from textual import getters
+from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Static
 
@@ -22,9 +23,6 @@ from tui.frame.host import host_of
 from tui.graph.pane import LONGEST, EmptyNotice
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 ROOMY = 70
 """Cells from which on there are columns for type and limits."""

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.widgets import Input, Static
 
@@ -20,19 +23,11 @@ from text.plain import plain
 from text.sentences import reason_of
 from tui import clock
 from tui.graph.actions import cancel_request
-from tui.graph.ask import AskPane
+from tui.graph.ask import Answer, AskPane
 from tui.graph.pane import LONGEST
 from tui.graph.parameters import typed
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from tui.graph.ask import Answer
 
 USUAL_S = f"{ANSWER_WITHIN_S:g}"
 LEAST_S, MOST_S = 0.1, 3600.0

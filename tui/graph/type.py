@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+
+from textual.app import ComposeResult
 
 from graph.messages.browse import MessageField, definition
 from graph.messages.types import UnknownTypeError
@@ -16,9 +17,6 @@ from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading,
 from tui.graph.parameters import typed
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Row
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 WIDEST = 2**63 - 1
 """A bound of this size or more is not informative."""

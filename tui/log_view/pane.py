@@ -11,10 +11,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from rich.cells import cell_len
 from textual import on
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
@@ -30,9 +31,6 @@ from tui.log_view.rows import exported, grouped
 from tui.log_view.view import LogView
 from tui.widgets.field import Field
 from tui.widgets.working import Working
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 CLIPBOARD_LIMIT = 100_000
 """Bytes; many terminals silently drop a longer OSC 52 sequence."""

@@ -11,23 +11,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from rich.cells import cell_len, set_cell_size
 from rich.style import Style
 from rich.text import Text
 from textual.cache import LRUCache
 from textual.color import Color
+from textual.selection import Selection
 from textual.strip import Strip
+from textual.widget import Widget
 
 from launcher.status import Severity
 from text.i18n import ngettext
 from text.plain import plain
 from tui.log_view.index import LogEntry, LogIndex, folded
-
-if TYPE_CHECKING:
-    from textual.selection import Selection
-    from textual.widget import Widget
 
 WORDS = tuple(severity.name for severity in Severity)
 WORD_CELLS = max(map(len, WORDS))

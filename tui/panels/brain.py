@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.topics import BRAIN_STATE
@@ -11,9 +11,6 @@ from tui.log_view.index import folded
 from tui.outcome.model_usage import BrainReport, brain_reports, budget_words, usage_words
 from tui.panels.panel import Panel, newest, other_type, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 TYPE = "diagnostic_msgs/msg/DiagnosticArray"
 LOOKS = {0: "good", 1: "muted"}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 from time import monotonic
-from typing import TYPE_CHECKING
+
+from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
@@ -16,9 +17,6 @@ from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.session.messages import PicturesChanged
 from tui.widgets.image_view import ImageView
 from tui.widgets.trouble import lost_words, trouble_words
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.joints import HEAD_PAN, HEAD_TILT
@@ -19,9 +20,6 @@ from text.plain import plain
 from tui.panels.panel import Joints, Panel, has_joints, joint_number, trouble_of
 from tui.widgets.canvas import Canvas, Point
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 LIMIT_DEG = 90.0
 SAME_WITHIN_DEG = 0.5

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
+
+from textual.app import ComposeResult
 
 from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
@@ -39,9 +41,6 @@ from tui.panels.panel import Panel, is_published, newest, other_type, row_of, tr
 from tui.panels.sonar import Bounds, bounds_of, ink_of, remark
 from tui.widgets.canvas import Canvas, scale_bar
 from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 GAP = "  "
 

@@ -6,8 +6,9 @@ import math
 from collections import deque
 from collections.abc import Iterable
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from textual.app import ComposeResult
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
 from graph.data import GraphUpdate
@@ -17,9 +18,6 @@ from text.figures import figure, whole
 from text.i18n import N_, _, decimal
 from tui.panels.panel import ALWAYS, Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 FREE_FROM_M = 1.0
 """ai_brain drives ahead from this distance on."""

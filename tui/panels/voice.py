@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from rich.cells import cell_len
+from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.sound import RATE_HZ, SILENCE_DBFS, level_dbfs, samples_of, text_in
@@ -22,9 +23,6 @@ from tui.log_view.rows import clock
 from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import EIGHTHS
 from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, cells_of, fit
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 LONGEST_TEXT = 2_000
 SHOWN_BYTES = 12

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.cells import cell_len
+from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL, STEERING
@@ -18,9 +19,6 @@ from text.i18n import N_, _, decimal
 from tui.panels.panel import Joints, Panel, first_published, has_joints, joint_number, newest, other_type, trouble_of
 from tui.widgets.canvas import Canvas, rectangle
 from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 STANDING_BELOW_M_S = 0.005
 EVEN_WITHIN_M_S = 0.003

@@ -20,12 +20,12 @@ from textual.widget import Widget
 
 from space.drawing.paints import Tint, rgb_of
 from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
+from tui.terminal.bandwidth import HasBandwidth
 from tui.widgets.canvas import spans
 from tui.widgets.words import OneStyle, word_strips
 
 if TYPE_CHECKING:
     from tui.space.aiming import Aim
-    from tui.terminal.bandwidth import HasBandwidth
 
 PAINTED = ("text", "muted", "accent", "second", "good", "warn", "bad", "free", "wall", "maybe")
 ZOOM = 1.25

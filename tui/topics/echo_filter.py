@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
+from graph.data import Sample
 from graph.messages.condition import LONGEST, ConditionError, MessageFilter
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import Sample
 
 LONGEST_WORDS = 200
 

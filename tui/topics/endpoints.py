@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from rich.cells import cell_len
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
@@ -19,9 +20,6 @@ from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit
 from tui.widgets.figures import UNKNOWN, seconds_text
 from tui.widgets.trouble import names, pair_words
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
 
 
 class TopicEndpoints(VerticalScroll, can_focus=True):

@@ -11,24 +11,19 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.cells import cell_len
 from textual.message import Message
 
 from graph.data import GraphUpdate, Sample
 from text.i18n import _, decimal
 from text.plain import plain
-from tui.topics.plot_history import History, HistoryDots, PlotField, Series
+from tui.topics.plot_history import History, HistoryDots, Numbers, PlotField, Series
 from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import Drawing, Ink, Line, fit
 from tui.widgets.figures import UNKNOWN
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from tui.topics.plot_history import Numbers
 
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, SupportsFloat, TypeAlias
+from typing import Any, NamedTuple, SupportsFloat, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+from graph.data import Sample, Value
 from text.plain import plain
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from graph.data import Sample, Value
-
-    Numbers: TypeAlias = NDArray[np.float64]
+Numbers: TypeAlias = NDArray[np.float64]
 
 SLOT_S = 0.025
 """Finer than a dot of the shortest window on the widest terminal."""

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from space.drawing.braille import BLANK, characters, clipped
 from text.i18n import _, decimal
 from tui.widgets.drawing import LOOKS, Ink, Line
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 Point = tuple[float, float]
 """x to the right and y downwards, in dots."""

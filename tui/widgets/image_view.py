@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.cells import cell_len
 from rich.color import Color
 from rich.segment import Segment
@@ -18,6 +19,7 @@ from textual.strip import Strip
 from textual.timer import Timer
 from textual.widget import Widget
 
+from graph.data import Sample
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError, shrink
@@ -29,11 +31,6 @@ from tui import clock
 from tui.terminal.bandwidth import Bandwidth, HasBandwidth, PicturePace
 from tui.widgets.canvas import spans
 from tui.widgets.words import OneStyle, cut, in_row, word_strips
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from graph.data import Sample
 
 CAPTION_FROM = 4
 """Number of rows from which on one of them is used for the caption."""

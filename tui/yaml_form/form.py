@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.events import Click
 from textual.message import Message
@@ -15,6 +16,7 @@ from textual.timer import Timer
 from textual.widgets import Static, TextArea
 from textual.worker import Worker
 
+from graph.data import Value
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.messages.yaml_form import check, prefilled
@@ -26,11 +28,6 @@ from tui.actions import Acting, Announce, bindings
 from tui.widgets.marked_editor import MarkedEditor, Token
 from tui.widgets.working import Working
 from tui.yaml_form.words import Wrong, place_of, wrong_words
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import Value
 
 CHECKED_AFTER_S = 0.15
 
