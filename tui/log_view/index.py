@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from rich.cells import cell_len, chop_cells, get_character_cell_size
+from rich.cells import cell_len, get_character_cell_size
 
 from launcher.status import LogLine, Severity
 from text.i18n import localized
@@ -160,8 +160,6 @@ _id_of = attrgetter("id")
 
 _narrow = re.compile("[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027\u2400-\u2421]*").fullmatch
 """Matches texts in which every character takes one cell."""
-_JOINER = "\u200d"
-"""Joins two emoji into one."""
 _EMOJI_STYLE = "\ufe0f"
 """Makes the character before it a wide emoji."""
 
@@ -173,12 +171,7 @@ def folded(text: str, width: int) -> list[str]:
     characters are cut between any two characters.
     """
     if not _narrow(text):
-        chopped = chop_cells(text, width) or [""]
-        # `chop_cells` drops trailing characters without width.
-        chopped[-1] += text[sum(map(len, chopped)) :]
-        if _JOINER in text and any(cell_len(row) > width for row in chopped):
-            return _cut_by_character(text, width)
-        return chopped
+        return _cut_by_character(text, width)
     pieces: list[str] = []
     at, end = 0, len(text)
     while end - at > width:
@@ -191,10 +184,7 @@ def folded(text: str, width: int) -> list[str]:
 
 
 def _cut_by_character(text: str, width: int) -> list[str]:
-    """Return rows of a text in which Rich counts a character beside a joiner as nothing.
-
-    Each character has its own width here, as if none were joined, so a row is never too wide.
-    """
+    """Return rows that are never too wide: each character has its own width, as if none were joined."""
     rows: list[str] = []
     start = used = 0
     for at, character in enumerate(text):
@@ -208,7 +198,7 @@ def _cut_by_character(text: str, width: int) -> list[str]:
 
 def folded_rows(text: str, width: int) -> int:
     """Return the number of rows that `folded` makes, without making them where possible."""
-    if len(text) <= width and (text.isascii() or (_JOINER not in text and cell_len(text) <= width)):
+    if len(text) <= width and _narrow(text):
         return 1
     return len(folded(text, width))
 
