@@ -90,7 +90,7 @@ SCREENS = {
         "WallScreen",
         "0",
         N_("Wall"),
-        N_("Big numbers and a big picture, to be read across a room; Esc goes back."),
+        N_("Distances, picture, wheels and words as large as possible, to be read across a room; Esc goes back."),
     ),
 }
 """In the order in which the top line names them."""

@@ -7,7 +7,7 @@ import pytest
 from graph.qos import Mismatch
 from tests.tui.panel_stage import Bare
 from tests.waiting import until
-from tui.widgets.qos_words import pair_words
+from tui.widgets.trouble import pair_words
 from tui.yaml_form.form import YamlForm
 
 
