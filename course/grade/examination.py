@@ -25,7 +25,7 @@ import course
 from course.grade.limits import descendants, taken
 from course.proof.trial import Places
 from course.results import MOST_BYTES
-from launcher.processes.table import processes, read_marks
+from launcher.processes.table import read_marks
 from text.nested import read_json
 from text.packing import unpack_text
 from text.run_path import OWN_RUN_DIR
@@ -200,10 +200,10 @@ class Examination:
 def _marked(run_dir: str) -> list[psutil.Process]:
     """Return all that has this run directory in its environment."""
     found = []
-    for each in processes():
-        if not each.zombie and (read_marks(each.pid) or {}).get(OWN_RUN_DIR) == run_dir:
+    for pid in psutil.pids():
+        if (read_marks(pid) or {}).get(OWN_RUN_DIR) == run_dir:
             with contextlib.suppress(psutil.NoSuchProcess):
-                found.append(psutil.Process(each.pid))
+                found.append(psutil.Process(pid))
     return found
 
 

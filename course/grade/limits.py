@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import resource
 import stat
+import subprocess
+from collections import defaultdict
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ import psutil
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
 FILE_BYTES = 256 << 20
 """Largest file that any of its processes can write, a recording included."""
@@ -90,18 +91,26 @@ class Taken:
 
 
 def descendants(pid: int) -> list[psutil.Process]:
-    """Return the living processes that descend from one, without that one."""
-    try:
-        found = psutil.Process(pid).children(recursive=True)
-    except psutil.NoSuchProcess:
-        return []
-    return [each for each in found if _lives(each)]
+    """Return the living processes that descend from one, without that one.
+
+    Not by `psutil.Process.children`, which gives up where /proc keeps others' processes to itself (hidepid=1).
+    """
+    children: defaultdict[int, list[psutil.Process]] = defaultdict(list)
+    for each in psutil.process_iter(["ppid"]):
+        children[each.info["ppid"]].append(each)
+    parents, found = [pid], []
+    for parent in parents:
+        born = children.pop(parent, [])
+        parents += [each.pid for each in born]
+        found += filter(_lives, born)
+    return found
 
 
 def _lives(process: psutil.Process) -> bool:
+    """Whether it has not ended; one whose first thread alone has ended looks so, but for its threads."""
     try:
-        return process.status() != psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
+        return process.status() != psutil.STATUS_ZOMBIE or process.num_threads() > 1
+    except psutil.Error:
         return False
 
 
@@ -185,36 +194,8 @@ class _Found:
 def remove_tree(root: Path) -> None:
     """Remove a folder and all in it, nested as deep and closed as it may be; nobody may work in it any more.
 
-    `shutil.rmtree` calls itself for each folder, and gives up at those that may not be read. Here, a folder within
-    another is moved up to the root first, so that no path becomes long.
+    `shutil.rmtree` calls itself for each folder, and gives up at those that may not be read.
     """
-    _open_up(str(root))
-    numbers = count()
-    folders = [str(root)]
-    # The list grows meanwhile.
-    for folder in folders:
-        folders += _emptied(folder, root, numbers)
-    for folder in reversed(folders):
-        with suppress(OSError):
-            os.rmdir(folder)  # noqa: PTH106
-
-
-def _emptied(folder: str, root: Path, numbers: Iterator[int]) -> list[str]:
-    """Remove the files of a folder, and move its folders up; return where those are now."""
-    moved = []
-    with suppress(OSError):
-        for entry in list(os.scandir(folder)):
-            with suppress(OSError):
-                if not entry.is_dir(follow_symlinks=False):
-                    os.unlink(entry.path)  # noqa: PTH108
-                    continue
-                _open_up(entry.path)
-                target = f"{root}/.removed-{os.getpid()}-{next(numbers)}"
-                os.rename(entry.path, target)  # noqa: PTH104
-                moved.append(target)
-    return moved
-
-
-def _open_up(folder: str) -> None:
-    with suppress(OSError):
-        os.chmod(folder, 0o700)  # noqa: PTH101
+    closed = ("-type", "d", "!", "-perm", "-700", "-execdir", "chmod", "700", "{}", ";")
+    for command in (("find", str(root), *closed), ("rm", "-rf", "--", str(root))):
+        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)

@@ -13,10 +13,11 @@ from course.judge.judge import judging
 from course.lessons.lesson import IGNORED
 from launcher.client.client import launch
 from launcher.domain.domain import LAST_SAFE_DOMAIN, default_domain
-from launcher.errors import LauncherError
+from launcher.errors import LauncherError, UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
 from launcher.runs.record import supervisors
+from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
@@ -123,7 +124,12 @@ def unused_domains(count: int) -> list[int]:
     """Return so many domains in which no session of this user runs, nor would by default.
 
     They are drawn, so that two proofs at the same time hardly ever meet.
+
+    Raises:
+        UsageError: if there is none.
     """
     taken = {default_domain(), *(one.domain for one in supervisors())}
     free = [domain for domain in range(1, LAST_SAFE_DOMAIN + 1) if domain not in taken]
+    if not free:
+        raise UsageError(say("no ROS domain is free: `deck ps` shows what runs in them, `deck down` stops it"))
     return random.SystemRandom().sample(free, min(count, len(free)))
