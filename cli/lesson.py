@@ -72,7 +72,7 @@ def _line(verdict: ProofVerdict, paint: Paint) -> str:
     variant = verdict.variant
     name = plain(variant.name)
     if verdict.complaint:
-        seed = "" if verdict.result is None else f" (seed {verdict.result.seed})"
+        seed = f" (seed {verdict.seed})" if verdict.seed else ""
         return f"{name}: {paint(localized(verdict.complaint), RED)}{seed}"
     well = _("passes") if variant.fails_at is None else _("fails, as it should")
     return f"{name}: {paint(well, GREEN)}"

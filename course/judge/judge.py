@@ -15,7 +15,7 @@ from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
 from course.judge.missing import dead_nodes
 from course.judge.unasked import UnaskedFailures, ends, start_anew
-from course.results import CheckResult, LessonResult, State, StepResult
+from course.results import CheckResult, State, StepResult
 from graph.data import Interest
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
@@ -85,9 +85,7 @@ class Judge:
 
         await self.evidence.until(look, FOUND_WITHIN_S)
 
-    async def once(
-        self, *, until: str = "", on_step: Callable[[StepResult], object] = lambda _: None
-    ) -> LessonResult:
+    async def once(self, on_step: Callable[[StepResult], object], *, until: str = "") -> None:
         """Judge every step once, in order; those after the step `until` are left out.
 
         `on_step` hears of each, and once more of one that a later failure of its node changes.
@@ -119,7 +117,6 @@ class Judge:
             await failures.look_on()
             results = self._revised(results, failures)
             tell()
-        return LessonResult(self.seed, self.evidence.values, tuple(results))
 
     async def _start_crashed(self) -> None:
         """Start the learner's nodes that have crashed, so that each step has one that runs.

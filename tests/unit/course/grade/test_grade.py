@@ -19,7 +19,7 @@ from course.grade.formats import FORMATS, writer_of
 from course.grade.grades import Grade
 from course.grade.grading import Terms, grade_all
 from course.grade.limits import Taken, descendants, remove_tree, taken
-from course.grade.submission import Files, UnreadableError, submissions
+from course.grade.submission import Files, submissions
 from course.results import State
 from launcher.errors import UsageError
 from tests.unit.course.grade.made import HOSTILE, LESSON, grade
@@ -153,7 +153,7 @@ def test_a_gigabyte_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     Files.read(place)
     with (place / "huge").open("wb") as file:
         file.truncate(10**12)
-    with pytest.raises(UnreadableError, match="right one"):
+    with pytest.raises(UsageError, match="right one"):
         Files.read(place)
 
 
