@@ -9,25 +9,18 @@ from __future__ import annotations
 import asyncio
 import re
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.judge.evidence import MET, Observation
+from course.judge.evidence import MET, Evidence, Observation
 from course.results import CheckResult, State
 from graph.observer.requests import CallService
 from launcher.faults.crash import held_by
 from launcher.processes.table import read_process
-from launcher.status import STUCK, NodeState
+from launcher.profile.steps.model import StepDocument
+from launcher.status import STUCK, NodeFault, NodeState
 from text.sentences import Words, say
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.judge.evidence import Evidence
-    from graph.data import CallResult
-    from launcher.profile.steps.model import StepDocument
-    from launcher.status import NodeFault, NodeStatus
 
 FOUND_WITHIN_S = 10.0
 """How long the services that every node has may take to be discovered."""
@@ -58,12 +51,17 @@ async def not_at_work(
     `since_s`: a crash since then counts, even if the node has been started again.
     `ran`: nodes of which the end counts as well, even if it was no crash.
     """
-    await evidence.until(lambda: MET if _settled(names, evidence) else None, SETTLED_WITHIN_S)
+    await evidence.holds(lambda: _settled(names, evidence), SETTLED_WITHIN_S)
     silent = await asyncio.gather(*(_silent_node(name, evidence) for name in names))
     for name, asked_in_vain in zip(names, silent, strict=True):
         seen, look = trouble(name, evidence, since_s, ended_too=name in ran)
-        if not seen and asked_in_vain:
-            seen, look = _silence(asked_in_vain, evidence.nodes[name])
+        fault = evidence.nodes[name].fault
+        if not seen and asked_in_vain and fault is not None and held_by(fault):
+            seen, look = _stuck(fault)
+        elif not seen and asked_in_vain:
+            seconds = f"{ANSWERS_WITHIN_S:g}"
+            seen = say("{node} does not answer within {seconds} s", node=asked_in_vain, seconds=seconds)
+            look = say("Does main come to rclpy.spin, and does every callback return?")
         if seen:
             # Several nodes may run it, and which of them fails first is chance.
             what = Path(evidence.nodes[name].file).name
@@ -80,7 +78,9 @@ def trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -
         return (say("it has ended"), say("rclpy.spin keeps a node running.")) if ended else ("", "")
     fault = node.fault
     if fault is not None and node.ails:
-        return _stuck(fault) if held_by(fault) else (_lasting(fault), "")
+        exception = fault.exception
+        lasting = exception if isinstance(exception, Words) else _ADDRESS.sub("", exception)
+        return _stuck(fault) if held_by(fault) else (replace(fault, exception=lasting).words, "")
     if node.signal is not None:
         return say("it was killed by {signal}", signal=node.signal), ""
     if node.exit_code is not None:
@@ -88,23 +88,9 @@ def trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -
     return node.detail or node.state.value, ""
 
 
-def _lasting(fault: NodeFault) -> Words:
-    """Return the words of a fault without what is another in each run."""
-    if isinstance(fault.exception, Words):
-        return fault.words
-    return replace(fault, exception=_ADDRESS.sub("", fault.exception)).words
-
-
 def _stuck(fault: NodeFault) -> tuple[str, str]:
     file = fault.file.rpartition("/")[2]
     return say("{name} in {file} does not return", name=held_by(fault), file=file), fault.meaning
-
-
-def _silence(node: str, status: NodeStatus) -> tuple[str, str]:
-    if status.fault is not None and held_by(status.fault):
-        return _stuck(status.fault)
-    seen = say("{node} does not answer within {seconds} s", node=node, seconds=f"{ANSWERS_WITHIN_S:g}")
-    return seen, say("Does main come to rclpy.spin, and does every callback return?")
 
 
 def _settled(names: Sequence[str], evidence: Evidence) -> bool:
@@ -120,8 +106,8 @@ async def _silent_node(name: str, evidence: Evidence) -> str:
     pid = evidence.nodes[name].pid
     if pid is not None and _is_of_ros(evidence.nodes[name].file):
         # One that is crashing leaves the graph before its process ends.
-        await evidence.until(
-            lambda: MET if _nodes_of(name, evidence) or evidence.nodes[name].pid != pid else None, FOUND_WITHIN_S
+        await evidence.holds(
+            lambda: bool(_nodes_of(name, evidence)) or evidence.nodes[name].pid != pid, FOUND_WITHIN_S
         )
     for node in _nodes_of(name, evidence):
         if not await _answers(name, node, evidence):
@@ -157,24 +143,18 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
     deadline_s = time.monotonic() + ANSWERS_WITHIN_S
     while (left_s := deadline_s - time.monotonic()) > 0 and not gone():
         once_s = min(left_s, ASKED_AGAIN_S)
-        call = evidence.observer.ask(CallService(service, TYPE, {"names": []}, once_s))
-        answer = asyncio.ensure_future(asyncio.wrap_future(call))
+        answer = asyncio.ensure_future(evidence.ask(CallService(service, TYPE, {"names": []}, once_s)))
         try:
-            seen = await evidence.until(lambda it=answer: _in(it, gone()), once_s + 1)  # type: ignore[misc]
+            await evidence.holds(lambda it=answer: it.done() or gone(), once_s + 1)  # type: ignore[misc]
+            if answer.done() and answer.result().ok:
+                return True
         finally:
             answer.cancel()
-        if seen.met:
-            return True
         # It may have been asked while it was ending, or before it served; and an answer is lost
         # if the node has not found by then who asks.
         await evidence.wait(AGAIN_S)
     # Of one that has ended there is more to say than that it does not answer.
     return evidence.nodes[name].pid != pid
-
-
-def _in(answer: asyncio.Future[CallResult], gone: bool) -> Observation:
-    met = answer.done() and not answer.cancelled() and answer.result().ok
-    return Observation(met=met, final=answer.done() or gone)
 
 
 def running(evidence: Evidence) -> frozenset[str]:

@@ -6,25 +6,22 @@ import asyncio
 import math
 import time
 from collections import deque
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, TypeVar
 
-from graph.data import PROCESS_NUMBERS, GraphUpdate
+from graph.data import PROCESS_NUMBERS, GraphUpdate, NodeRow, TopicRow, Value
+from graph.observer.observer import Observer
+from graph.observer.requests import Request
 from graph.ros import ONLY_LISTENING
+from launcher.client.client import SupervisorClient
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.processes.table import TICKS_PER_S, read_process
+from launcher.profile.steps.expressions import Drawn
+from launcher.status import LogLine, NodeStatus
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-    from typing import Any
-
-    from graph.data import NodeRow, TopicRow, Value
-    from graph.observer.observer import Observer
-    from launcher.client.client import SupervisorClient
-    from launcher.profile.steps.expressions import Drawn
-    from launcher.status import LogLine, NodeStatus
-
+T = TypeVar("T")
 KEPT_BYTES = 32_000_000
 """Most bytes of messages that are kept of one topic."""
 KEPT = 2000
@@ -64,7 +61,6 @@ MET = Observation(met=True)
 
 
 def missed(seen: str, look: str = "", *, final: bool = False) -> Observation:
-    """Return what has been seen instead of what should be."""
     return Observation(met=False, seen=seen, final=final, look=look)
 
 
@@ -264,9 +260,14 @@ class Evidence:
         process = read_process(pid)
         return 2 if process is not None and process.name == "bwrap" else pid % PROCESS_NUMBERS
 
-    async def until(
-        self, look: Callable[[], Observation | None], within_s: float, *, tick_s: float = TICK_S
-    ) -> Observation:
+    async def ask(self, request: Request[T]) -> T:
+        return await asyncio.wrap_future(self.observer.ask(request))
+
+    async def holds(self, condition: Callable[[], bool], within_s: float) -> bool:
+        """Wait until something holds; return whether it does in time."""
+        return (await self.until(lambda: MET if condition() else None, within_s)).met
+
+    async def until(self, look: Callable[[], Observation | None], within_s: float) -> Observation:
         """Look again whenever something changes, until it is met, final, or time is up.
 
         `look` returns None for as long as nothing can be said; that is not met in the end.
@@ -279,7 +280,7 @@ class Evidence:
             left_s = deadline_s - time.monotonic()
             if left_s <= 0 or self.ended:
                 return observation or Observation(met=False)
-            await self.wait(min(left_s, tick_s))
+            await self.wait(min(left_s, TICK_S))
 
     async def let_pass(self, seconds: float) -> None:
         """Wait so long, or until the session ends."""

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 import re
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
-from course.judge.evidence import MET, Observation, is_decks, missed, same_name
+from course.judge.evidence import MET, Evidence, Observation, ReceivedMessage, is_decks, missed, same_name
 from course.judge.fields import FieldMissingError, differs, field_at, shown
 from course.judge.missing import dead_nodes, no_messages, no_topic, nobody_subscribes, wrong_type
-from text.sentences import say
+from graph.data import EndpointInfo
+from launcher.profile.steps.checks import FieldCheck, LogCheck, SubscriptionCheck, TopicCheck
+from text.sentences import reason_of, say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.judge.evidence import Evidence, ReceivedMessage
-    from graph.data import EndpointInfo
-    from launcher.profile.steps.checks import FieldCheck, LogCheck, SubscriptionCheck, TopicCheck
 
 ABSENT_S = 1.0
 """How long nobody must publish what nobody is to publish: discovery takes its time."""
@@ -108,30 +104,24 @@ def _names(ends: Sequence[EndpointInfo]) -> str:
 
 def subscription(check: SubscriptionCheck, evidence: Evidence, _since_s: float) -> Observation:
     """Somebody subscribes to a topic."""
-    row = evidence.topic(check.subscription)
+    row, by = evidence.topic(check.subscription), check.by or ""
     ends = row.subscribed_by if row is not None else ()
-    ours = [end for end in ends if not check.by or same_name(end.node, check.by)]
-    if not ours and not check.by:
+    ours = [end for end in ends if not by or same_name(end.node, by)]
+    if not ours and not by:
         return nobody_subscribes(evidence, check.subscription)
     if not ours:
-        seen = say("{node} does not subscribe to {topic}", node=check.by, topic=check.subscription)
-        return missed(seen, dead_nodes(evidence) or _near_subscription(check, evidence))
+        seen = say("{node} does not subscribe to {topic}", node=by, topic=check.subscription)
+        topics = evidence.update.topics
+        names = [row.name for row in topics if any(same_name(end.node, by) for end in row.subscribed_by)]
+        meant = nearest(check.subscription, names)
+        look = say("Is create_subscription called in __init__, with the right name?")
+        if meant:
+            look = say("There is a subscription to {meant}: compare the names.", meant=meant)
+        return missed(seen, dead_nodes(evidence) or look)
     types = tuple(dict.fromkeys(end.type_name for end in ours))
     if check.type and types != (check.type,):
         return wrong_type(check.subscription, check.type, types)
     return MET
-
-
-def _near_subscription(check: SubscriptionCheck, evidence: Evidence) -> str:
-    topics = [
-        row.name
-        for row in evidence.update.topics
-        if any(same_name(end.node, check.by or "") for end in row.subscribed_by)
-    ]
-    meant = nearest(check.subscription, topics)
-    if meant:
-        return say("There is a subscription to {meant}: compare the names.", meant=meant)
-    return say("Is create_subscription called in __init__, with the right name?")
 
 
 def field(check: FieldCheck, evidence: Evidence, since_s: float) -> Observation:
@@ -150,7 +140,7 @@ def field(check: FieldCheck, evidence: Evidence, since_s: float) -> Observation:
     try:
         found = [field_at(message.value, check.path) for message in messages]
     except FieldMissingError as error:
-        return missed(error.words)
+        return missed(reason_of(error))
     if check.changes is not None:
         return _changes(check, found)
     wrong = [value for value in found if not _complies(check, value)]
@@ -185,9 +175,8 @@ def log(check: LogCheck, evidence: Evidence, since_s: float) -> Observation:
     if len(right) >= check.lines:
         return MET
     if fitting and not right:
-        found, text = fitting[0].severity.value, fitting[0].text
-        words = say("{node} logs it as {found}, not as {wanted}: {text}", node=check.log, found=found,
-                    wanted=check.level, text=text)  # fmt: skip
+        words = say("{node} logs it as {found}, not as {wanted}: {text}", node=check.log,
+                    found=fitting[0].severity.value, wanted=check.level, text=fitting[0].text)  # fmt: skip
         return missed(words)
     if right:
         seen = say("{node} logs it fewer than {n} times", node=check.log, n=check.lines)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
-from course.judge.evidence import missed
+from course.judge.evidence import Evidence, Observation, missed
 from graph.data import Trouble
 from launcher.status import NodeState
 from text.sentences import say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from course.judge.evidence import Evidence, Observation
 
 _COMPARE = say("Compare the name of the topic letter by letter.")
 _DOWN = (NodeState.FAILED, NodeState.BACKOFF, NodeState.EXITED)
@@ -22,20 +19,21 @@ def dead_nodes(evidence: Evidence) -> str:
 
     What is wrong with a learner's own file comes first: an older process may still run.
     """
-    for node in evidence.nodes.values():
-        if node.fault is not None and (node.state in _DOWN or node.fault.kind != "warning"):
-            return say("{node}: {why}", node=node.name, why=node.fault.words)
-    for node in evidence.nodes.values():
-        if node.state in _DOWN:
-            return say("{node} does not run: {why}", node=node.name, why=node.detail or node.state.value)
-    return next(
-        (
-            say("{node}: {why}", node=node.name, why=node.fault.words)
-            for node in evidence.nodes.values()
-            if node.fault is not None
-        ),
-        "",
-    )
+    nodes = evidence.nodes.values()
+    faults = {node.name: node.fault for node in nodes if node.fault is not None}
+    severe = [
+        name for name, fault in faults.items() if evidence.nodes[name].state in _DOWN or fault.kind != "warning"
+    ]
+    down = [node for node in nodes if node.state in _DOWN]
+    if down and not severe:
+        return say("{node} does not run: {why}", node=down[0].name, why=down[0].detail or down[0].state.value)
+    return next((say("{node}: {why}", node=name, why=faults[name].words) for name in (*severe, *faults)), "")
+
+
+def but(words: str, name: str, names: Iterable[str]) -> str:
+    """Return the words that something is not there, and what there is of a similar name."""
+    meant = nearest(name, list(names))
+    return say("{words}, but {meant}", words=words, meant=meant) if meant else words
 
 
 def no_topic(evidence: Evidence, topic: str) -> Observation:
@@ -62,7 +60,6 @@ def nobody_subscribes(evidence: Evidence, topic: str) -> Observation:
 
 
 def wrong_type(topic: str, wanted: str, found: tuple[str, ...]) -> Observation:
-    """Say that a topic has another type than it should."""
     return missed(
         say("{topic} has the type {found}, not {wanted}", topic=topic, found=", ".join(found), wanted=wanted),
         say("Compare the import of the message and the type in create_publisher."),

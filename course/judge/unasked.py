@@ -8,19 +8,13 @@ itself, or by what a step has asked of it, is tried: it is started anew and left
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from course.judge.at_work import learners_nodes, not_at_work, trouble
-from course.judge.evidence import MET, Observation
-from launcher.profile.steps.checks import NodeCheck
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from course.judge.evidence import Evidence
-    from course.results import CheckResult, StepResult
-    from launcher.profile.steps.checks import CheckDocument
-    from launcher.profile.steps.model import StepDocument
+from course.judge.evidence import Evidence
+from course.results import CheckResult, StepResult
+from launcher.profile.steps.checks import CheckDocument, NodeCheck
+from launcher.profile.steps.model import StepDocument
 
 BEGUN_WITHIN_S = 20.0
 WATCHED_S = 8.0
@@ -59,15 +53,10 @@ class UnaskedFailures:
         """Watch until each node has had the time to fail, and try those that do."""
         evidence = self._evidence
 
-        def old_enough() -> Observation | None:
-            young = [
-                name
-                for name in self._own()
-                if evidence.nodes[name].state.alive and evidence.lived_s(name) < WATCHED_S
-            ]
-            return None if young else MET
+        def is_young(name: str) -> bool:
+            return evidence.nodes[name].state.alive and evidence.lived_s(name) < WATCHED_S
 
-        await evidence.until(old_enough, WATCHED_S)
+        await evidence.holds(lambda: not any(map(is_young, self._own())), WATCHED_S)
         await self.look()
 
     def _failed(self) -> list[str]:
@@ -90,11 +79,10 @@ class UnaskedFailures:
         for name in names:
             evidence.forget_earlier_crash(name)
 
-        def fails() -> Observation | None:
-            told = (trouble(name, evidence, since_s[name], ended_too=True)[0] for name in names)
-            return MET if all(told) else None
+        def fail() -> bool:
+            return all(trouble(name, evidence, since_s[name], ended_too=True)[0] for name in names)
 
-        await evidence.until(fails, min(LONGER * lived_s + AND_S, ALONE_AT_MOST_S))
+        await evidence.holds(fail, min(LONGER * lived_s + AND_S, ALONE_AT_MOST_S))
         for name in names:
             idle = await not_at_work([name], evidence, since_s[name], frozenset([name]))
             if idle is not None:
@@ -107,14 +95,9 @@ def ends(check: CheckDocument) -> bool:
     return isinstance(check, NodeCheck) and check.ends is not None
 
 
-async def start_anew(names: Iterable[str], evidence: Evidence) -> None:
+async def start_anew(names: Sequence[str], evidence: Evidence) -> None:
     """Start nodes anew; return once the process of each has begun."""
-    names = list(names)
     before_s = {name: evidence.began_s(name) for name in names}
     evidence.touched.update(names)
     await evidence.client.restart(*names)
-
-    def all_begun() -> Observation | None:
-        return MET if all(evidence.began_s(name) > before_s[name] for name in names) else None
-
-    await evidence.until(all_begun, BEGUN_WITHIN_S)
+    await evidence.holds(lambda: all(evidence.began_s(name) > before_s[name] for name in names), BEGUN_WITHIN_S)
