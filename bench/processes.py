@@ -79,5 +79,5 @@ def deck(
 def table(*rows: Iterable[object]) -> None:
     """Print a table, its head first."""
     head, *others = rows
-    for row in (head, ["---" for _ in head], *others):  # type: ignore[attr-defined]
+    for row in (head, ["---" for _ in head], *others):
         print("|", " | ".join(map(str, row)), "|")

@@ -7,18 +7,18 @@ or its help. `deck PROFILE` needs no command word, so the word is looked for fir
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Coroutine, Sequence
 from importlib import import_module
-from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
+from typing import IO, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from cli.options import add_language, add_profile_options, add_screen
-from launcher.processes.interrupts import held
+from launcher.processes.interrupts import held, run
 from text.i18n import N_, _, ngettext
 from text.output import harmless
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    Handler: TypeAlias = Callable[[argparse.Namespace], int]
+Handler: TypeAlias = Callable[[argparse.Namespace], int]
+Work: TypeAlias = Callable[[argparse.Namespace], int | Coroutine[None, None, int]]
+T = TypeVar("T", bound=Work)
 
 
 class Place(NamedTuple):
@@ -67,25 +67,30 @@ HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
 WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
 """Options that may come before the command word."""
-_ANNOUNCED: dict[str, tuple[Callable[[Parser], None], Handler]] = {}
+_ANNOUNCED: dict[str, tuple[Callable[[Parser], None], Work]] = {}
 
 
-def command(name: str, options: Callable[[Parser], None]) -> Callable[[Handler], Handler]:
+def command(name: str, options: Callable[[Parser], None]) -> Callable[[T], T]:
     """Announce a function as a command, which returns the exit code; `options` declares what it takes."""
 
-    def announced(handler: Handler) -> Handler:
-        _ANNOUNCED[name] = (options, handler)
-        return handler
+    def announced(work: T) -> T:
+        _ANNOUNCED[name] = (options, work)
+        return work
 
     return announced
 
 
 def handler_of(name: str) -> Handler:
     """Return what carries a command out."""
-    return _announced(name)[1]
+
+    def handle(options: argparse.Namespace) -> int:
+        done = _announced(name)[1](options)
+        return done if isinstance(done, int) else run(done)
+
+    return handle
 
 
-def _announced(name: str) -> tuple[Callable[[Parser], None], Handler]:
+def _announced(name: str) -> tuple[Callable[[Parser], None], Work]:
     with held():
         import_module("cli.screen" if name == OPEN else COMMANDS[name].module)
     return _ANNOUNCED[name]

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import sys
+from argparse import Namespace
+from collections.abc import Sequence
 from contextlib import aclosing
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
 from course.grade.formats import CLASSROOM50, FORMATS, look, message, remarks, title, writer_of
-from course.grade.grades import GradeState
+from course.grade.grades import Grade, GradeState, StepGrade
 from course.grade.grading import WITHIN_S, Terms, grade_all
-from course.grade.submission import check_gradable, default_folder, submissions
+from course.grade.submission import Submission, check_gradable, default_folder, submissions
 from course.grade.walls import bubblewrap_for
 from course.lessons.catalog import find_lesson
+from course.lessons.lesson import LessonFolder
 from course.results import State
 from launcher.errors import UsageError
 from launcher.processes.ending import ENDING
@@ -26,15 +28,6 @@ from text.os_words import os_reason
 from text.output import BOLD, GREEN, RED, YELLOW, Paint, say_error, table, write
 from text.plain import plain
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Sequence
-
-    from cli.commands import Parser
-    from course.grade.grades import Grade, StepGrade
-    from course.grade.submission import Submission
-    from course.lessons.lesson import LessonFolder
 
 _WIDTH = 20
 """Room for the longest state."""

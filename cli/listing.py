@@ -3,34 +3,22 @@
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_json, add_profile_options
-from launcher.errors import ProfileError
-from launcher.profile.catalog import find_profile, list_profiles
+from launcher.errors import ProfileError, ProfileProblem
+from launcher.profile.catalog import ProfileEntry, find_profile, list_profiles
 from launcher.profile.defaults import shown
-from launcher.profile.load import faults_of, load_profile
+from launcher.profile.load import Profile, faults_of, load_profile
 from text.i18n import _, localized, ngettext, pick
 from text.output import DIM, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
 
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from pathlib import Path
 
-    from cli.commands import Parser
-    from launcher.errors import ProfileProblem
-    from launcher.profile.catalog import ProfileEntry
-    from launcher.profile.load import Profile
-
-
-def _list_options(parser: Parser) -> None:
-    add_json(parser)
-
-
-@command("list", _list_options)
+@command("list", add_json)
 def list_command(options: Namespace) -> int:
     """Show all profiles, broken ones with their first problem."""
     entries = list_profiles()

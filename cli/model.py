@@ -8,9 +8,11 @@ import os
 import shlex
 import socket
 import sys
+from argparse import Namespace
+from collections.abc import Coroutine
 from ipaddress import ip_address
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 from urllib.parse import urlsplit
 
 from brain.faults import ModelError
@@ -18,7 +20,7 @@ from brain.serving.model_file import ModelFile, ServingError, examine
 from brain.serving.server import Order
 from brain.serving.service import ServedAnswer, Service, installed, require_port
 from brain.settings import load, settings_path
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_language, between, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
@@ -26,12 +28,6 @@ from launcher.profile.defaults import shown
 from text.i18n import _, localized
 from text.output import BOLD, RED, YELLOW, Paint, say_error, write
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Coroutine
-
-    from cli.commands import Parser
 
 T = TypeVar("T")
 EVERYWHERE = ("0.0.0.0", "::")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shlex
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
-from cli.commands import command
+from cli.commands import Parser, command
 from course.folder.folder import NewFolder, new_folder, new_node
 from course.lessons.catalog import find_lesson
 from launcher.errors import UsageError
@@ -15,11 +15,6 @@ from text.output import write
 from text.plain import plain
 from text.program import deck_command
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
 
 
 def _new_options(parser: Parser) -> None:

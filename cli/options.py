@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import TYPE_CHECKING
+from argparse import ArgumentParser
+from collections.abc import Callable
 
 from launcher.domain.domain import parse_domain
 from launcher.errors import DomainError
 from text.i18n import LANGUAGES, _, localized
-
-if TYPE_CHECKING:
-    from argparse import ArgumentParser
-    from collections.abc import Callable
 
 MOST_AT_ONCE = 64
 LAST_PORT = 65535

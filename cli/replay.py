@@ -7,16 +7,18 @@ another node publishes: with a recorded distance beside a measured one a robot w
 from __future__ import annotations
 
 import sys
+import threading
 import time
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph, add_screen, rate, seconds
 from cli.screen import has_terminal
 from graph.bag.errors import BagError, nothing_to_publish
-from graph.bag.listing import bags_in
+from graph.bag.listing import ListedBag, bags_in
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
 from launcher.rundir import recordings_path
@@ -31,11 +33,6 @@ from tui.recording.words import BETWEEN, length_words, size_words
 from tui.session.requests import OpenRequest, ReplayRequest
 
 if TYPE_CHECKING:
-    import threading
-    from argparse import Namespace
-
-    from cli.commands import Parser
-    from graph.bag.listing import ListedBag
     from graph.bag.publishing import BagPublisher, PublishingProgress
     from graph.bag.reading import Bag, TopicInBag
 

@@ -13,20 +13,17 @@ JSON has one object per line, distinguished by `event`:
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from launcher.status import NodeState, Severity
+from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
 from text.i18n import LocalizedFloat, _, localized, ngettext
 from text.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
 from text.plain import plain
 from tui.session.words import hardware_words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from launcher.status import LogLine, NodeStatus, SessionInfo
-
     Write = Callable[[str], None]
 
 COLOURS = {Severity.WARN: YELLOW, Severity.ERROR: RED, Severity.FATAL: RED, Severity.DEBUG: DIM}

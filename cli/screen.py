@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING
+from argparse import Namespace
+from pathlib import Path
 
-from cli.commands import COMMANDS, HELP, OPEN, command
+from cli.commands import COMMANDS, HELP, OPEN, Parser, command
 from cli.options import add_running, add_screen
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
@@ -14,12 +15,6 @@ from text.i18n import _
 from text.output import say_error, write
 from text.sentences import say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from pathlib import Path
-
-    from cli.commands import Parser
 
 
 @command(OPEN, lambda _parser: None)

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from cli.domains import stop_is_kept
 from cli.health import well
 from cli.report import status_fields
+from launcher.status import NodeStatus, SessionInfo
 from text.i18n import _, decimal, localized, pick
 from text.output import BOLD, DIM, RED, Paint, table, write
 from text.plain import plain
 from tui.session.words import hardware_words
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
-
-    from launcher.status import NodeStatus, SessionInfo
 
 
 def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()) -> None:

@@ -12,10 +12,12 @@ import os
 import sys
 import threading
 import webbrowser
+from argparse import Namespace
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeVar
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph, port
 from launcher.errors import LauncherError, UsageError
@@ -26,10 +28,6 @@ from text.sentences import reason_of
 from view.place import ViewError, has_window, need_foxglove, rerun_program, rviz_program, ssh_command
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Callable
-
-    from cli.commands import Parser
     from view.sharing import Sharing
     from view.showing import Showing
 

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_graph, add_screen
 from cli.screen import has_terminal
 from text.i18n import _
 from text.output import say_error
 from tui.session.requests import OpenRequest, WatchRequest
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
 
 
 def _watch_options(parser: Parser) -> None:

@@ -15,18 +15,16 @@ import asyncio
 import contextlib
 import os
 import sys
+from collections.abc import AsyncGenerator, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import course
 from course.results import MOST_BYTES, StepResult
 from launcher.wire import Sentence, encode, pack, unpack
 from text.nested import read_json
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Iterable
 
 CLOSED_WITHIN_S = 3.0
 

@@ -16,11 +16,12 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from brain.faults import ModelError
 from brain.key import key_of
@@ -31,16 +32,11 @@ from launcher.domain.discovery import set_discovery, why_open
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError, LauncherError
 from launcher.rundir import check_writable, found_run_dir, log_path
-from launcher.serial_ports import serial_ports
+from launcher.serial_ports import SerialPort, serial_ports
 from text.i18n import LocalizedFloat, _, localized
 from text.nested import read_json
 from text.plain import plain
 from text.run_path import run_path
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-
-    from launcher.serial_ports import SerialPort
 
 ROOT = Path("/")
 

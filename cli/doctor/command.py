@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from argparse import Namespace
+from collections.abc import Iterable
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.doctor.checks import examine
-from cli.doctor.finding import Level
+from cli.doctor.finding import Finding, Level
 from cli.options import add_graph, add_json
 from launcher.errors import UsageError
 from text.i18n import N_, _
 from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Iterable
-
-    from cli.commands import Parser
-    from cli.doctor.finding import Finding
 
 LOOKS = {Level.OK: (N_("ok"), GREEN), Level.WARN: (N_("warn"), YELLOW), Level.FAIL: (N_("FAIL"), RED)}
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from cli.doctor.finding import Level
 from cli.preflight.open_port import DeviceAnswer, OpenPort, bad, good
@@ -18,10 +18,6 @@ from robot.wire.pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
 from robot.wire.pico import encode as encode_pico
 from robot.wire.tfluna import Model, TofDecoder, TofFrame
 from text.i18n import LocalizedFloat, _
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
 """Kind of device to its display name."""

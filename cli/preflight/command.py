@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
 from cli.doctor.command import show
 from cli.doctor.finding import Level
@@ -14,9 +14,6 @@ from text.i18n import _, ngettext
 from text.output import Paint, json_text, write
 from text.plain import plain
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
 
 NOT_READY = 2
 

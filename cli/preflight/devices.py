@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from functools import partial
@@ -23,15 +24,12 @@ from cli.preflight.answers import ask
 from cli.preflight.open_port import DeviceAnswer, bad, good, held, holders, opened
 from launcher.profile.devices import wanted
 from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose, variable
-from launcher.serial_ports import lasting_names, serial_ports
+from launcher.serial_ports import SerialPort, lasting_names, serial_ports
 from text.i18n import _, localized
 from text.nested import read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from launcher.profile.load import Profile
-    from launcher.serial_ports import SerialPort
 
     Settings = Mapping[str, Any]
     Question = Callable[[], tuple[str, DeviceAnswer]]

@@ -7,21 +7,18 @@ import errno
 import os
 import termios
 import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import serial
 
 from cli.doctor.checks import permission_fix
 from cli.doctor.finding import Level
 from launcher.profile.serial_choice import how_to_choose
+from launcher.serial_ports import SerialPort
 from text.i18n import _, localized
 from text.sentences import reason_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from launcher.serial_ports import SerialPort
 
 PROC = Path("/proc")
 MASTERS = ("/dev/ptmx", "/dev/pts/ptmx")

@@ -13,10 +13,10 @@ import shlex
 import shutil
 import sys
 import tempfile
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph
 from cli.shell.elsewhere import for_bash, for_fish, for_zsh
@@ -27,11 +27,6 @@ from launcher.ros_tools import own_folders, ros_tools, without_wheels
 from text.i18n import _
 from text.output import say_error
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
 
 KNOWN = ("bash", "zsh", "fish", "sh", "dash", "ksh")
 LABEL = "DECK_SHELL"

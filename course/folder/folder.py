@@ -10,17 +10,13 @@ import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.lessons.catalog import course_dir
-from course.lessons.lesson import IGNORED
+from course.lessons.lesson import IGNORED, LessonFolder
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.i18n import language
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from course.lessons.lesson import LessonFolder
 
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 NODE = """\

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.folder.folder import folder_of, own_profile
 from course.lessons.catalog import course_dir, lesson_of
-from course.lessons.lesson import folders
+from course.lessons.lesson import LessonFolder, folders
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
-
-if TYPE_CHECKING:
-    from course.lessons.lesson import LessonFolder
-    from launcher.profile.model import Profile
-    from launcher.status import NodeStatus, SessionInfo
+from launcher.profile.model import Profile
+from launcher.status import NodeStatus, SessionInfo
 
 OF_DECK = "nodes."
 """What the name of a module of Deck's own nodes begins with."""

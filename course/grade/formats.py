@@ -13,21 +13,17 @@ from __future__ import annotations
 import os
 import socket
 import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, timezone
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from course.grade.grades import GradeState
+from course.grade.grades import Grade, GradeState, StepGrade
 from course.results import State
 from launcher.errors import UsageError
 from text.i18n import localized, pick
 from text.output import json_text
 from text.plain import plain
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from course.grade.grades import Grade, StepGrade
 
 CLASSROOM50 = "classroom50"
 FORMATS = ("json", "junit", CLASSROOM50)

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from enum import Enum
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+from course.lessons.lesson import LessonFolder
 from course.results import State, StepResult
+from launcher.profile.steps.expressions import Drawn
+from launcher.profile.steps.model import StepDocument
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from datetime import datetime
-    from pathlib import Path
-
-    from course.lessons.lesson import LessonFolder
-    from launcher.profile.steps.expressions import Drawn
-    from launcher.profile.steps.model import StepDocument
 
 
 class GradeState(str, Enum):

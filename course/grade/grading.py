@@ -164,16 +164,16 @@ class _Grading:
             for step in steps:
                 self.on_step(self.submission, step)
             return replace(self._grade, steps=steps, notes=())
-        for attempt in range(1, ATTEMPTS + 1):
+        for _attempt in range(ATTEMPTS):
             domain = await self.domains.get()
             try:
                 again = await self._in_domain(domain)
             finally:
                 self.domains.put_nowait(domain)
-            if not again or attempt == ATTEMPTS:
+            if not again:
                 break
-        reason = self._grade.reason
-        steps = filled_up(self.terms.lesson, self._grade.steps, State.UNJUDGED, reason or say("it was not judged"))
+        why = self._grade.reason or say("it was not judged")
+        steps = filled_up(self.terms.lesson, self._grade.steps, State.UNJUDGED, why)
         return replace(self._grade, steps=steps, seed=self._seed, seconds=time.monotonic() - began_s)
 
     async def _in_domain(self, domain: int) -> bool:

@@ -7,17 +7,14 @@ import resource
 import stat
 import subprocess
 from collections import defaultdict
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import psutil
 
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 FILE_BYTES = 256 << 20
 """Largest file that any of its processes can write, a recording included."""
@@ -98,7 +95,7 @@ def descendants(pid: int) -> list[psutil.Process]:
     children: defaultdict[int, list[psutil.Process]] = defaultdict(list)
     for each in psutil.process_iter(["ppid"]):
         children[each.info["ppid"]].append(each)
-    parents, found = [pid], []
+    parents, found = [pid], list[psutil.Process]()
     for parent in parents:
         born = children.pop(parent, [])
         parents += [each.pid for each in born]

@@ -51,8 +51,8 @@ class Files:
                     raise UsageError(words)
                 contents[path.relative_to(folder)] = data
         except OSError as error:
-            path, why = str(error.filename or folder), error.strerror or str(error)
-            raise UsageError(say("{path} cannot be read: {why}", path=path, why=why)) from error
+            at, why = str(error.filename or folder), error.strerror or str(error)
+            raise UsageError(say("{path} cannot be read: {why}", path=at, why=why)) from error
         return cls(folder, contents)
 
     def write(self, folder: Path, *, without: str = "") -> None:

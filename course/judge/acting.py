@@ -140,7 +140,7 @@ async def parameter(check: ParameterCheck, evidence: Evidence) -> Observation:
     return taken if check.refuses is None or not taken.met else await _refuses(check.refuses, row, node, evidence)
 
 
-def _is_now(name: str, value: Value) -> Observation:
+def _is_now(name: str, value: Value | None) -> Observation:
     return missed(say("the parameter {name} is {value}", name=name, value=shown(value)))
 
 

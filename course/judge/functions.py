@@ -73,9 +73,9 @@ def load(folder: Path, named: str) -> Callable[[SeenMessages], object]:
 
 async def python(check: PythonCheck, evidence: Evidence, since_s: float) -> Observation:
     """Whatever the function says; it is asked again whenever something comes."""
-    function = evidence.functions.get(check.python) or await _in_thread(
-        partial(load, evidence.folder, check.python), check.python
-    )
+    function = evidence.functions.get(check.python)
+    if function is None:
+        function = await _in_thread(partial(load, evidence.folder, check.python), check.python)
     if check.over is not None:
         await evidence.let_pass(check.over)
     deadline_s = time.monotonic() + check.within

@@ -15,19 +15,15 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.lessons.mistakes import WRONG, read_mistakes
+from course.lessons.mistakes import WRONG, Mistake, read_mistakes
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
+from launcher.profile.model import Profile
+from launcher.profile.steps.model import StepDocument
 from text.os_words import os_reason
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from course.lessons.mistakes import Mistake
-    from launcher.profile.model import Profile
-    from launcher.profile.steps.model import StepDocument
 
 LANGUAGES = ("en", "ru")
 _SECTION = re.compile(r"^## +(\S+) *$", re.MULTILINE)

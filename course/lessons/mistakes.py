@@ -13,15 +13,13 @@ The old lines must stand in the file exactly once. Numbers behind @@ and lines w
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import NamedTuple
 
 from launcher.errors import UsageError
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from pathlib import Path
 
 WRONG = "wrong.diff"
 

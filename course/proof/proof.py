@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import tempfile
+from collections.abc import AsyncIterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.lessons.mistakes import WRONG
+from course.lessons.lesson import LessonFolder
+from course.lessons.mistakes import WRONG, Mistake
 from course.proof.trial import Places, layered, trial
 from course.results import State, StepResult
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import new_seed
 from text.i18n import LANGUAGES
 from text.sentences import reason_of, say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Sequence
-
-    from course.lessons.lesson import LessonFolder
-    from course.lessons.mistakes import Mistake
 
 NODES_OF_ONE = 6
 """How many nodes a run may have that does not take the place of others."""

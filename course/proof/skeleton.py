@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from course.lessons.mistakes import WRONG
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _LESSON = """\
 title: {en: My lesson, ru: Мой урок}

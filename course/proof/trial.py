@@ -6,29 +6,23 @@ import asyncio
 import contextlib
 import random
 import shutil
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Any
 
-from course.judge.judge import judging
-from course.lessons.lesson import IGNORED
+from course.judge.judge import Judge, judging
+from course.lessons.lesson import IGNORED, LessonFolder
 from launcher.client.client import launch
+from launcher.client.start import StartingSupervisor
 from launcher.domain.domain import LAST_SAFE_DOMAIN, default_domain
 from launcher.errors import LauncherError, UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
+from launcher.profile.model import Profile
+from launcher.profile.node import Node
 from launcher.runs.record import supervisors
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
-    from typing import Any
-
-    from course.judge.judge import Judge
-    from course.lessons.lesson import LessonFolder
-    from launcher.client.start import StartingSupervisor
-    from launcher.profile.model import Profile
-    from launcher.profile.node import Node
 
 PARTING_S = 12.0
 """How long the nodes may take to end when all has been judged."""

@@ -220,7 +220,7 @@ def test_closed_folders_are_removed_too(tmp_path: Path) -> None:
 
 def test_what_others_processes_hide_keeps_nobody_from_counting(monkeypatch: pytest.MonkeyPatch) -> None:
     """As where /proc is mounted with hidepid=1: it names the processes of others, and lets nobody look at them."""
-    read = psutil._pslinux.open_binary  # type: ignore[attr-defined]
+    read = psutil._pslinux.open_binary
 
     def hidden(path: str) -> object:
         if path.startswith("/proc/1/"):
