@@ -9,5 +9,4 @@ _NOT_FROM_HERE = "import sys; sys.path[:] = [place for place in sys.path if plac
 
 
 def python(program: str, *arguments: str) -> list[str]:
-    """Return the command line that runs a program with this Python."""
     return [sys.executable, "-c", _NOT_FROM_HERE + program, *arguments]

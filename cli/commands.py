@@ -81,8 +81,6 @@ def command(name: str, options: Callable[[Parser], None]) -> Callable[[T], T]:
 
 
 def handler_of(name: str) -> Handler:
-    """Return what carries a command out."""
-
     def handle(options: argparse.Namespace) -> int:
         done = _announced(name)[1](options)
         return done if isinstance(done, int) else run(done)
@@ -125,7 +123,6 @@ def wanted_language(arguments: Sequence[str]) -> str | None:
 
 
 def parser_of(name: str) -> Parser:
-    """Return the parser of a command."""
     if name == OPEN:
         return _open_parser()
     parser = Parser(prog=f"deck {name}", description=_(COMMANDS[name].help), allow_abbrev=False)

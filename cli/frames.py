@@ -46,7 +46,6 @@ def _frames_options(parser: Parser) -> None:
 
 @command("frames", _frames_options)
 def frames_command(options: Namespace) -> int:
-    """Listen for some seconds and print; return 1 if there is no frame or anything is wrong."""
     from graph.frames.findings import findings_in
     from graph.frames.tree import FrameTree
 

@@ -88,7 +88,6 @@ def _grade_options(parser: Parser) -> None:
 
 @command("grade", _grade_options)
 def grade_command(options: Namespace) -> int:
-    """Grade the folders; write the grades; return 0 if all have passed."""
     lesson = find_lesson(options.lesson)
     check_gradable(lesson)
     folders = [Path(name) for name in options.folders]

@@ -31,7 +31,6 @@ def _lesson_options(parser: Parser) -> None:
 
 @command("lesson", _lesson_options)
 async def lesson_command(options: Namespace) -> int:
-    """Prove lessons, or begin a new one."""
     if options.action == "new":
         folder = new_lesson(Path(options.lessons[0] if options.lessons else "my-lesson"))
         write(_("made {path}; next: deck lesson check {path}").format(path=plain(shown(folder))))

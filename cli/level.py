@@ -33,7 +33,6 @@ def _level_options(parser: Parser) -> None:
 
 @command("level", _level_options)
 def level_command(options: Namespace) -> int:
-    """Print the level that the node has now."""
     from graph.observer.requests import LogLevel
 
     node = f"/{options.node.removeprefix('/')}"

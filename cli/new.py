@@ -30,7 +30,6 @@ def _new_options(parser: Parser) -> None:
 
 @command("new", _new_options)
 def new_command(options: Namespace) -> int:
-    """Make the folder, and say what is in it and what comes next."""
     if bool(options.lesson) == bool(options.node):
         raise UsageError(say("write deck new LESSON or deck new --node NAME"))
     made = new_node(options.node) if options.node else new_folder(find_lesson(options.lesson), again=options.again)
@@ -39,7 +38,6 @@ def new_command(options: Namespace) -> int:
 
 
 def tell(made: NewFolder) -> None:
-    """Say what was made."""
     for file in made.files:
         write(_("made {path}").format(path=plain(shown(file))))
     for copy in made.kept:

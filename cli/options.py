@@ -16,7 +16,6 @@ LAST_PORT = 65535
 
 
 def domain(text: str) -> int:
-    """Return a ROS domain, 0 to 232."""
     try:
         return parse_domain(text, "--domain")
     except DomainError as error:
@@ -25,7 +24,6 @@ def domain(text: str) -> int:
 
 
 def seconds(text: str) -> float:
-    """Return seconds, at least 0."""
     try:
         seconds = float(text)
     except ValueError:
@@ -62,29 +60,24 @@ def bandwidth(text: str) -> int:
 
 
 def folder(text: str) -> str:
-    """Return the name of a folder, which is not empty."""
     if not text:
         raise argparse.ArgumentTypeError(_("the name of a folder is missing"))
     return text
 
 
 def count(text: str) -> int:
-    """Return a number of lines."""
     if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(_("{text!r} is not a number of lines").format(text=text))
     return int(text)
 
 
 def whole(text: str) -> int:
-    """Return a whole number that is not negative."""
     if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(_("{text!r} is not a whole number").format(text=text))
     return int(text)
 
 
 def between(least: int, most: int) -> Callable[[str], int]:
-    """Return what parses a whole number from `least` to `most`."""
-
     def parse(text: str) -> int:
         number = whole(text)
         if not least <= number <= most:
@@ -102,7 +95,6 @@ at_once = between(1, MOST_AT_ONCE)
 
 
 def add_profile(parser: ArgumentParser) -> None:
-    """Add the name of a profile, which has to be given."""
     parser.add_argument("profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain"))
 
 
@@ -156,17 +148,14 @@ def add_screen(parser: ArgumentParser) -> None:
 
 
 def add_json(parser: ArgumentParser) -> None:
-    """Add the output for programs."""
     parser.add_argument("--json", action="store_true", help=_("print JSON, for programs"))
 
 
 def add_language(parser: ArgumentParser) -> None:
-    """Add the language."""
     parser.add_argument("--lang", choices=LANGUAGES, help=_("language; by default that of the locale"))
 
 
 def add_running(parser: ArgumentParser) -> None:
-    """Add the name of a running profile, for when there are several."""
     parser.add_argument("name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several are running"))
 
 

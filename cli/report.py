@@ -49,7 +49,6 @@ class Summary:
 
     @property
     def exit_code(self) -> int:
-        """The exit code of `deck run`."""
         return 0 if self.well else 1
 
 
@@ -196,7 +195,6 @@ class JsonReport:
 
 
 def status_fields(node: NodeStatus) -> dict[str, object]:
-    """Return the JSON fields of a node."""
     return {
         "node": node.name,
         "state": node.state.value,

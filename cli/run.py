@@ -110,7 +110,6 @@ class Run:
         self._asked_to_stop = 0
 
     async def to_the_end(self) -> int:
-        """Run it; return the exit code."""
         began = time.monotonic()
         try:
             client = await self._start()

@@ -65,7 +65,6 @@ def _attach_options(parser: Parser) -> None:
 
 @command("attach", _attach_options)
 def attach_command(options: Namespace) -> int:
-    """Show the screen of a profile that is running in the background."""
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
         return 2

@@ -69,7 +69,6 @@ def silent_as_json(session: SessionInfo, pids: Mapping[str, int]) -> dict[str, o
 
 
 def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
-    """Return a session in the form of `deck ps --json`."""
     return {
         "name": session.name,
         "run_id": session.run_id,

@@ -72,7 +72,6 @@ def _add_common(parser: Parser) -> None:
 
 @command("view", _view_options)
 def view_command(options: Namespace) -> int:
-    """Show the robot in 3D until the viewer is closed."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     if options.rviz:
         _rviz(domain, discovery)
@@ -105,7 +104,6 @@ def _foxglove_options(parser: Parser) -> None:
 
 @command("foxglove", _foxglove_options)
 def foxglove_command(options: Namespace) -> int:
-    """Serve what is published to Foxglove until it is stopped."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     from view.sharing import Sharing
 
@@ -121,7 +119,6 @@ def foxglove_command(options: Namespace) -> int:
 
 
 def _have(find: Callable[[], T]) -> T:
-    """Return what is installed. Raises UsageError if it is not."""
     try:
         return find()
     except ViewError as error:

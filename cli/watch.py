@@ -21,7 +21,6 @@ def _watch_options(parser: Parser) -> None:
 
 @command("watch", _watch_options)
 def watch_command(options: Namespace) -> int:
-    """Show the screen until the user quits."""
     from launcher.domain.domain import choose_domain
 
     domain = choose_domain(options.domain, None, os.environ)

@@ -50,7 +50,6 @@ _KINDS: dict[str, type[JudgeEvent]] = {"values": ValuesDrawn, "step": StepResult
 
 
 def packed(event: JudgeEvent) -> bytes:
-    """Return an event as a line."""
     kind = next(kind for kind, made in _KINDS.items() if isinstance(event, made))
     return encode({"event": kind, **pack(event)})
 

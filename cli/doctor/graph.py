@@ -50,7 +50,6 @@ class GraphExamination(NamedTuple):
         ]
 
     def lines(self) -> list[Finding]:
-        """Return the findings as lines of the doctor's report."""
         return [
             (fail if one.level is FindingLevel.ERROR else warn)(
                 f"graph.{one.rule}",
@@ -61,7 +60,6 @@ class GraphExamination(NamedTuple):
         ]
 
     def summary(self) -> str:
-        """Return what was examined, and how much was found."""
         rows = (self.update.nodes, self.update.topics, self.update.services)
         nodes, topics, services = (sum(not is_housekeeping(row.name) for row in of_kind) for of_kind in rows)
         words = _("domain {domain}: nodes: {nodes}, topics: {topics}, services: {services}")

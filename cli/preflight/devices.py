@@ -153,7 +153,6 @@ def _picture(name: str) -> DeviceAnswer:
 
 
 def ask_sound(device: str, settings: Settings) -> tuple[str, DeviceAnswer]:
-    """Look for microphone and loudspeaker."""
     titles = {"microphone": _("microphone"), "speaker": _("loudspeaker")}
     wanted = {setting: str(settings.get(setting, "")) for setting in titles}
     wanted = {setting: name for setting, name in wanted.items() if name != OFF}
@@ -184,7 +183,6 @@ def _is(wanted: str, index: int, name: str) -> bool:
 
 
 def _run(command: Sequence[str]) -> str:
-    """Return what a program prints, nothing if it fails or takes too long."""
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, errors="replace", timeout=WITHIN_S, check=False

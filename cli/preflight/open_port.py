@@ -33,12 +33,10 @@ class DeviceAnswer(NamedTuple):
 
 
 def good(text: str) -> DeviceAnswer:
-    """Return the answer of a device that is as it should be."""
     return DeviceAnswer(Level.OK, text)
 
 
 def bad(text: str, fix: str) -> DeviceAnswer:
-    """Return what is wrong with a device, and what mends it."""
     return DeviceAnswer(Level.FAIL, text, fix)
 
 
@@ -201,7 +199,6 @@ def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:
 
 
 def held(others: Sequence[Holder]) -> DeviceAnswer:
-    """Return that other programs have a device open."""
     fix = _("close it; if it is a running robot: deck down")
     return bad(_("{names} has it open").format(names=", ".join(map(str, others))), fix)
 

@@ -75,17 +75,14 @@ end
 
 
 def for_bash() -> str:
-    """Return the functions for a shell of bash's kind."""
     return _functions() + _BASH
 
 
 def for_zsh() -> str:
-    """Return the functions for zsh."""
     return _functions() + _ZSH
 
 
 def for_fish() -> str:
-    """Return the functions for fish."""
     cases = (f"case {name}\necho {shlex.quote(line)} >&2" for name, line in _lines())
     return _FISH.format(cases="\n".join(cases))
 

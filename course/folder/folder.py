@@ -104,7 +104,6 @@ def new_folder(lesson: LessonFolder, *, again: bool = False) -> NewFolder:
 
 
 def _starter(lesson: LessonFolder) -> dict[Path, Path]:
-    """Return the files that a lesson begins with, by their place in the folder."""
     if not lesson.starter.is_dir():
         raise UsageError(say("there is no folder {folder}", folder=str(lesson.starter)))
     sources = [file for file in sorted(lesson.starter.rglob("*")) if file.is_file() and not IGNORED & set(file.parts)]

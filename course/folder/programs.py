@@ -39,7 +39,6 @@ def programs_for(session: SessionInfo, node: NodeStatus) -> list[Path | str | No
 
 
 def _of_deck(lesson: LessonFolder | None, node: str) -> list[str]:
-    """Return Deck's node of this name in a lesson."""
     spec = None if lesson is None else lesson.profile.nodes.get(node)
     run = "" if spec is None else spec.run or ""
     return [run] if run.startswith(OF_DECK) else []

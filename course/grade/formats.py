@@ -47,17 +47,14 @@ def writer_of(name: str, count: int, environ: Mapping[str, str] = os.environ) ->
 
 
 def title(step: StepGrade) -> str:
-    """Return the title of a step, its id if it has none."""
     return plain(pick(step.step.title) or step.step.id)
 
 
 def message(step: StepGrade) -> str:
-    """Return why a step has not passed; empty if it has."""
     return plain(localized(step.message))
 
 
 def look(step: StepGrade) -> str:
-    """Return where the learner should look; empty if nothing can be said."""
     return plain(localized(step.look))
 
 
@@ -67,7 +64,6 @@ def remarks(grade: Grade) -> list[str]:
 
 
 def _json(grades: Sequence[Grade]) -> str:
-    """Return the grades as JSON."""
     lesson = grades[0].lesson
     document = {
         "schema": "deck/grade/v1",

@@ -30,7 +30,6 @@ KILLED_AFTER_S = 12.0
 
 
 async def service(check: ServiceCheck, evidence: Evidence) -> Observation:
-    """A service answers as it should."""
     name = "/" + check.service.lstrip("/")
 
     def served() -> Observation:
@@ -64,7 +63,6 @@ def _of_type(name: str, found: tuple[str, ...], wanted: str) -> Observation:
 
 
 async def action(check: ActionCheck, evidence: Evidence) -> Observation:
-    """An action carries a goal out, refuses it, or lets go of it."""
     name = "/" + check.action.lstrip("/")
 
     def offered() -> Observation:

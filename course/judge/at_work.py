@@ -158,7 +158,6 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
 
 
 def running(evidence: Evidence) -> frozenset[str]:
-    """Return the names of the nodes that run."""
     return frozenset(node.name for node in evidence.nodes.values() if node.state.alive)
 
 

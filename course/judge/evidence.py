@@ -219,7 +219,6 @@ class Evidence:
         return (min if latched else max)(publishing or starts.values(), default=0.0)
 
     def messages(self, topic: str, since_s: float) -> list[ReceivedMessage]:
-        """Return the messages on a topic that have arrived since then, oldest first."""
         return [each for each in self._messages.get(topic, ()) if each.time_s >= since_s]
 
     def lines(self, node: str, since_s: float) -> list[LogLine]:
@@ -232,7 +231,6 @@ class Evidence:
         return next((row for row in self.update.topics if row.name == name), None)
 
     def node(self, name: str) -> NodeRow | None:
-        """Return what is known of a node of the graph."""
         return next((row for row in self.update.nodes if row.name == name), None)
 
     def has_found_everybody(self) -> bool:
@@ -289,7 +287,6 @@ class Evidence:
             await self.wait(left_s)
 
     async def wait(self, longest_s: float) -> None:
-        """Wait until something changes."""
         self._changed.clear()
         try:
             await asyncio.wait_for(self._changed.wait(), longest_s)

@@ -287,7 +287,6 @@ def _concluded(step: StepDocument, found: list[CheckResult], done: int, idle: Ch
 
 
 def _why(error: Exception) -> str:
-    """Say why a check could not be judged."""
     if isinstance(error, (LessonFaultError, FieldError, UnknownTypeError)):
         return reason_of(error)
     return say("the judge failed: {kind}: {text}", kind=type(error).__name__, text=str(error))

@@ -103,7 +103,6 @@ def _names(ends: Sequence[EndpointInfo]) -> str:
 
 
 def subscription(check: SubscriptionCheck, evidence: Evidence, _since_s: float) -> Observation:
-    """Somebody subscribes to a topic."""
     row, by = evidence.topic(check.subscription), check.by or ""
     ends = row.subscribed_by if row is not None else ()
     ours = [end for end in ends if not by or same_name(end.node, by)]
@@ -168,7 +167,6 @@ def _complies(check: FieldCheck, value: Any) -> bool:  # noqa: ANN401 - any fiel
 
 
 def log(check: LogCheck, evidence: Evidence, since_s: float) -> Observation:
-    """A node logs a line."""
     lines = evidence.lines(check.log, since_s)
     fitting = [line for line in lines if re.search(check.matches, line.text)]
     right = [line for line in fitting if check.level in (None, line.severity.value)]

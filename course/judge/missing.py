@@ -37,7 +37,6 @@ def but(words: str, name: str, names: Iterable[str]) -> str:
 
 
 def no_topic(evidence: Evidence, topic: str) -> Observation:
-    """Say that nobody publishes a topic, and what there is instead."""
     meant = nearest(topic, [row.name for row in evidence.update.topics if row.publishers and row.name != topic])
     if meant:
         return missed(say("nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant), _COMPARE)
@@ -48,7 +47,6 @@ def no_topic(evidence: Evidence, topic: str) -> Observation:
 
 
 def nobody_subscribes(evidence: Evidence, topic: str) -> Observation:
-    """Say that nobody subscribes to a topic, and what there is instead."""
     meant = nearest(topic, [row.name for row in evidence.update.topics if row.subscribed_by and row.name != topic])
     if meant:
         seen = say("nobody subscribes to {topic}, but {meant} is subscribed to", topic=topic, meant=meant)
@@ -67,7 +65,6 @@ def wrong_type(topic: str, wanted: str, found: tuple[str, ...]) -> Observation:
 
 
 def no_messages(evidence: Evidence, topic: str, type_name: str) -> Observation:
-    """Say why there are no messages on a topic."""
     row = evidence.topic(topic)
     if row is None or not row.publishers:
         return no_topic(evidence, topic)

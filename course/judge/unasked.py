@@ -91,7 +91,6 @@ class UnaskedFailures:
 
 
 def ends(check: CheckDocument) -> bool:
-    """Whether a check asks a node to end."""
     return isinstance(check, NodeCheck) and check.ends is not None
 
 

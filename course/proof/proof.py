@@ -47,7 +47,6 @@ class ProofVerdict:
 
 
 def variants(lesson: LessonFolder) -> list[Variant]:
-    """Return the variants of a lesson."""
     base = (lesson.starter, lesson.solution)
     return [
         Variant(lesson, "starter", base[:1], ""),
