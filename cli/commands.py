@@ -42,7 +42,7 @@ COMMANDS = {
     "attach": Place("cli.screen", N_("open the screen of a profile running in the background")),
     "down": Place("cli.background", N_("stop a profile running in the background")),
     "stop": Place("cli.stop", N_("stop a running robot at once: the emergency stop, without ROS")),
-    "watch": Place("cli.watch", N_("open the screen on nodes that others have started in a ROS domain")),
+    "watch": Place("cli.screen", N_("open the screen on nodes that others have started in a ROS domain")),
     "level": Place("cli.level", N_("show or set from which severity on a running node logs")),
     "frames": Place("cli.frames", N_("print the tree of frames and what is wrong with it")),
     "mcp": Place("cli.mcp", N_("let agents look at the robot, propose, and drive only with consent (MCP)")),
@@ -54,9 +54,7 @@ COMMANDS = {
     "lesson": Place("cli.lesson", N_("check a lesson that you have written, or begin one")),
     "grade": Place("cli.grade", N_("grade the files of folders by the steps of a lesson, whatever they do")),
     "model": Place("cli.model", N_("a language model on this machine, for Deck to ask")),
-    "shell": Place(
-        "cli.shell.command", N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python")
-    ),
+    "shell": Place("cli.shell", N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python")),
     "diagnostics": Place("cli.diagnostics", N_("show what drivers and others say on /diagnostics, as a tree")),
     "doctor": Place(
         "cli.doctor.command",

@@ -56,7 +56,7 @@ def _check_options(parser: Parser) -> None:
 def check_command(options: Namespace) -> int:
     """Report problems of one profile, of all, or of devices; return 0 if there are none."""
     if options.preflight:
-        from cli.preflight.command import preflight_command
+        from cli.preflight.devices import preflight_command
 
         return preflight_command(options)
     paths = [find_profile(options.profile)] if options.profile else [entry.path for entry in list_profiles()]

@@ -1,4 +1,4 @@
-"""`deck` and `deck attach`: the screen, if there is a terminal to draw it on."""
+"""`deck`, `deck attach` and `deck watch`: the screen, if there is a terminal to draw it on."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from argparse import Namespace
 from pathlib import Path
 
 from cli.commands import COMMANDS, HELP, OPEN, Parser, command
-from cli.options import add_running, add_screen
+from cli.options import add_graph, add_running, add_screen
+from launcher.domain.domain import choose_domain
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
 from text.i18n import _
@@ -77,6 +78,25 @@ def attach_command(options: Namespace) -> int:
     return run_screen(
         None, lang=options.lang, attach=options.name or session.name, bandwidth=options.bandwidth, wall=options.wall
     )
+
+
+def _watch_options(parser: Parser) -> None:
+    add_graph(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
+    add_screen(parser)
+    parser.epilog = _("Deck starts and stops nothing here.")
+
+
+@command("watch", _watch_options)
+def watch_command(options: Namespace) -> int:
+    domain = choose_domain(options.domain, None, os.environ)
+    if not has_terminal():
+        say_error(_("watch needs a terminal; `deck record` works without one"))
+        return 2
+    from tui.live import run_live
+    from tui.session.requests import OpenRequest, WatchRequest
+
+    order = OpenRequest(watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall)
+    return run_live(order, options.lang, options.bandwidth)
 
 
 def has_terminal() -> bool:

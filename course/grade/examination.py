@@ -22,7 +22,7 @@ from typing import Any
 import psutil
 
 import course
-from course.grade.limits import descendants, taken
+from course.grade.limits import Taken, descendants
 from course.proof.trial import Places
 from course.results import MOST_BYTES
 from launcher.processes.table import read_marks
@@ -158,7 +158,7 @@ class _Excess:
         places = Places(place, Path(request.lesson).name).writable
         while process.returncode is None:
             await asyncio.sleep(LOOK_EVERY_S)
-            words = (await asyncio.to_thread(taken, process.pid, places)).excess()
+            words = (await asyncio.to_thread(Taken, process.pid, places)).excess()
             if time.monotonic() > deadline_s:
                 words = say("it took longer than {n:g} s", n=request.within_s)
             if words:

@@ -116,39 +116,30 @@ def _step(step: StepGrade) -> dict[str, Any]:
 def _junit(grades: Sequence[Grade]) -> str:
     """Return the document; an `error` is what is not the learner's fault, such as a dead judge."""
     root = ET.Element("testsuites")
-    for number, grade in enumerate(grades):
-        root.append(_suite(number, grade))
+    root.extend(_suite(number, grade) for number, grade in enumerate(grades))
     ET.indent(root)
-    text = ET.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
 def _suite(number: int, grade: Grade) -> ET.Element:
     states = [step.result.state for step in grade.steps]
     suite = ET.Element(
         "testsuite",
-        {
-            "name": _token(grade.student),
-            "package": grade.lesson.name,
-            "id": str(number),
-            # Without a time zone, as the schema has it.
-            "timestamp": grade.began.strftime("%Y-%m-%dT%H:%M:%S"),
-            "hostname": _token(socket.gethostname()) or "localhost",
-            "tests": str(len(states)),
-            "failures": str(states.count(State.FAILED)),
-            "errors": str(states.count(State.UNJUDGED)),
-            "skipped": str(states.count(State.WAITS)),
-            "time": f"{grade.seconds:.3f}",
-        },
+        name=_token(grade.student),
+        package=grade.lesson.name,
+        id=str(number),
+        # Without a time zone, as the schema has it.
+        timestamp=grade.began.strftime("%Y-%m-%dT%H:%M:%S"),
+        hostname=_token(socket.gethostname()) or "localhost",
+        tests=str(len(states)),
+        failures=str(states.count(State.FAILED)),
+        errors=str(states.count(State.UNJUDGED)),
+        skipped=str(states.count(State.WAITS)),
+        time=f"{grade.seconds:.3f}",
     )
     properties = ET.SubElement(suite, "properties")
-    for name, value in (
-        ("folder", str(grade.folder)),
-        ("points", str(grade.points)),
-        ("max_points", str(grade.max_points)),
-        ("seed", str(grade.seed)),
-    ):
-        ET.SubElement(properties, "property", {"name": name, "value": plain(value)})
+    for name in ("folder", "points", "max_points", "seed"):
+        ET.SubElement(properties, "property", name=name, value=plain(str(getattr(grade, name))))
     suite.extend(_case(grade, step) for step in grade.steps)
     ET.SubElement(suite, "system-out").text = "\n".join(remarks(grade))
     ET.SubElement(suite, "system-err").text = "" if grade.state is not GradeState.UNGRADED else grade.state.value
@@ -156,21 +147,14 @@ def _suite(number: int, grade: Grade) -> ET.Element:
 
 
 def _case(grade: Grade, step: StepGrade) -> ET.Element:
-    case = ET.Element(
-        "testcase",
-        {
-            "name": _token(f"{step.step.id}: {title(step)}"),
-            "classname": f"{grade.lesson.name}.{step.step.id}",
-            "time": f"{step.seconds:.3f}",
-        },
-    )
+    name, kind = _token(f"{step.step.id}: {title(step)}"), f"{grade.lesson.name}.{step.step.id}"
+    case = ET.Element("testcase", name=name, classname=kind, time=f"{step.seconds:.3f}")
     state = step.result.state
     if state is State.WAITS:
         ET.SubElement(case, "skipped")
     elif state is not State.PASSED:
         kind = "failure" if state is State.FAILED else "error"
-        said = ET.SubElement(case, kind, {"type": state.value, "message": message(step)})
-        said.text = look(step)
+        ET.SubElement(case, kind, type=state.value, message=message(step)).text = look(step)
     return case
 
 
@@ -221,17 +205,17 @@ def _classroom50(grade: Grade, submission: dict[str, str]) -> str:
         }
         for step in grade.steps
     ]
-    began, now = (
-        when.astimezone(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
-        for when in (grade.began, datetime.now(timezone.utc))
-    )
     document = {
         "schema": "classroom50/result/v1",
         **submission,
-        "datetime": began,
-        "graded_at": now,
+        "datetime": _utc(grade.began),
+        "graded_at": _utc(datetime.now(timezone.utc)),
         "score": grade.points,
         "max-score": grade.max_points,
         "tests": tests,
     }
     return json_text(document, indent=2)
+
+
+def _utc(when: datetime) -> str:
+    return when.astimezone(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")

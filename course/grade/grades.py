@@ -38,11 +38,10 @@ class StepGrade:
         """Why it has not passed, in a sentence; empty if it has."""
         if self.result.state is State.PASSED:
             return ""
-        for check in self.result.checks:
-            if check.state in (State.PASSED, State.NOT_YET):
-                continue
-            return say("{what}: {seen}", what=check.what, seen=check.seen or check.state.value)
-        return self.result.reason or say("it could not be judged")
+        check = next((one for one in self.result.checks if one.state not in (State.PASSED, State.NOT_YET)), None)
+        if check is None:
+            return self.result.reason or say("it could not be judged")
+        return say("{what}: {seen}", what=check.what, seen=check.seen or check.state.value)
 
     @property
     def look(self) -> str:

@@ -9,7 +9,6 @@ import subprocess
 from collections import defaultdict
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
@@ -61,16 +60,25 @@ def _tasks(pid: int) -> int:
     return 0
 
 
-@dataclass(frozen=True)
 class Taken:
-    """What is taken at the moment."""
+    """What a process, all that descend from it, and some folders take at the moment; each file counts once."""
 
-    processes: int
-    memory_bytes: int
-    disk_bytes: int
-    files: int = 0
-    unseen: str = ""
-    """A folder that cannot be looked into."""
+    def __init__(self, pid: int, places: Iterable[Path]) -> None:
+        self._sizes: dict[tuple[int, int], int] = {}
+        """By device and number."""
+        self._unseen = ""
+        """A folder that cannot be looked into."""
+        family = [one.pid for one in descendants(pid)]
+        for place in places:
+            self._look_through(place)
+        for one in family:
+            self._add_removed(one)
+        self.processes = len(family)
+        self.memory_bytes = sum(_memory_bytes(one) for one in family)
+        if self.memory_bytes > MEMORY_BYTES:
+            # What they share counts once.
+            self.memory_bytes = sum(_share_bytes(one) for one in family)
+        self.disk_bytes = sum(self._sizes.values())
 
     def excess(self) -> str:
         """Say which limit is exceeded; empty if none is."""
@@ -80,11 +88,44 @@ class Taken:
             return say("it took more than {gb} GB of memory", gb=MEMORY_BYTES >> 30)
         if self.disk_bytes > DISK_BYTES:
             return say("it wrote more than {mb} MB", mb=DISK_BYTES >> 20)
-        if self.files > FILES:
+        if len(self._sizes) > FILES:
             return say("it made more than {n} files", n=FILES)
-        if self.unseen:
-            return say("it made a folder that cannot be looked into: {folder}", folder=self.unseen[:200])
+        if self._unseen:
+            return say("it made a folder that cannot be looked into: {folder}", folder=self._unseen[:200])
         return ""
+
+    def _look_through(self, folder: Path) -> None:
+        """Add all that is in a folder, as far as is allowed to be there."""
+        waiting = [(str(folder), 0)]
+        while waiting and len(self._sizes) <= FILES and not self._unseen:
+            place, depth = waiting.pop()
+            try:
+                with os.scandir(place) as entries:
+                    for entry in entries:
+                        self._add(entry.stat(follow_symlinks=False))
+                        if entry.is_dir(follow_symlinks=False):
+                            waiting.append((entry.path, depth + 1))
+            except (FileNotFoundError, NotADirectoryError):
+                continue
+            except OSError:
+                self._unseen = place
+            if depth > DEEPEST:
+                self._unseen = place
+
+    def _add_removed(self, pid: int) -> None:
+        """Add the files that a process has open and that are in no folder any more."""
+        try:
+            opened = os.listdir(f"/proc/{pid}/fd")  # noqa: PTH208
+        except OSError:
+            return
+        for number in opened:
+            with suppress(OSError):
+                seen = os.stat(f"/proc/{pid}/fd/{number}")  # noqa: PTH116
+                if stat.S_ISREG(seen.st_mode) and seen.st_nlink == 0:
+                    self._add(seen)
+
+    def _add(self, seen: os.stat_result) -> None:
+        self._sizes[seen.st_dev, seen.st_ino] = seen.st_blocks * 512
 
 
 def descendants(pid: int) -> list[psutil.Process]:
@@ -111,21 +152,6 @@ def _lives(process: psutil.Process) -> bool:
         return False
 
 
-def taken(pid: int, places: Iterable[Path]) -> Taken:
-    """Return what a process, all that descend from it, and some folders take."""
-    family = descendants(pid)
-    found = _Found()
-    for place in places:
-        found.look_through(place)
-    for one in family:
-        found.add_removed(one.pid)
-    memory_bytes = sum(_memory_bytes(one.pid) for one in family)
-    if memory_bytes > MEMORY_BYTES:
-        # What they share counts once.
-        memory_bytes = sum(_share_bytes(one.pid) for one in family)
-    return Taken(len(family), memory_bytes, sum(found.sizes.values()), len(found.sizes), found.unseen)
-
-
 def _memory_bytes(pid: int) -> int:
     """Return what a process has in memory, but for what is read from files."""
     return _sum_of(f"/proc/{pid}/status", "RssAnon", "RssShmem")
@@ -144,48 +170,6 @@ def _sum_of(path: str, *names: str) -> int:
         return sum(int(fields[name].split()[0]) << 10 for name in names if name in fields)
     except (OSError, ValueError):
         return 0
-
-
-class _Found:
-    """The files of some folders and processes, each counted once."""
-
-    def __init__(self) -> None:
-        self.sizes: dict[tuple[int, int], int] = {}
-        """By device and number."""
-        self.unseen = ""
-
-    def look_through(self, folder: Path) -> None:
-        """Add all that is in a folder, as far as is allowed to be there."""
-        waiting = [(str(folder), 0)]
-        while waiting and len(self.sizes) <= FILES and not self.unseen:
-            place, depth = waiting.pop()
-            try:
-                with os.scandir(place) as entries:
-                    for entry in entries:
-                        self._add(entry.stat(follow_symlinks=False))
-                        if entry.is_dir(follow_symlinks=False):
-                            waiting.append((entry.path, depth + 1))
-            except (FileNotFoundError, NotADirectoryError):
-                continue
-            except OSError:
-                self.unseen = place
-            if depth > DEEPEST:
-                self.unseen = place
-
-    def add_removed(self, pid: int) -> None:
-        """Add the files that a process has open and that are in no folder any more."""
-        try:
-            opened = os.listdir(f"/proc/{pid}/fd")  # noqa: PTH208
-        except OSError:
-            return
-        for number in opened:
-            with suppress(OSError):
-                seen = os.stat(f"/proc/{pid}/fd/{number}")  # noqa: PTH116
-                if stat.S_ISREG(seen.st_mode) and seen.st_nlink == 0:
-                    self._add(seen)
-
-    def _add(self, seen: os.stat_result) -> None:
-        self.sizes[seen.st_dev, seen.st_ino] = seen.st_blocks * 512
 
 
 def remove_tree(root: Path) -> None:

@@ -18,7 +18,7 @@ from course.grade import limits, submission
 from course.grade.formats import FORMATS, writer_of
 from course.grade.grades import Grade
 from course.grade.grading import Terms, grade_all
-from course.grade.limits import Taken, descendants, remove_tree, taken
+from course.grade.limits import Taken, descendants, remove_tree
 from course.grade.submission import Files, submissions
 from course.results import State
 from launcher.errors import UsageError
@@ -190,7 +190,7 @@ def at_work(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Taken]:
     with subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         process.stdout.readline()
-        yield taken(os.getpid(), [tmp_path])
+        yield Taken(os.getpid(), [tmp_path])
         process.communicate(b"\n")
 
 
@@ -200,7 +200,7 @@ def test_memory_and_files_that_have_no_name_count(at_work: Taken) -> None:
 
 def test_folders_that_cannot_be_looked_into_end_it(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", DEEP], cwd=tmp_path, check=True)
-    assert "cannot be looked into" in localized(taken(os.getpid(), [tmp_path]).excess())
+    assert "cannot be looked into" in localized(Taken(os.getpid(), [tmp_path]).excess())
     remove_tree(tmp_path)
     assert not tmp_path.exists()
 
@@ -244,4 +244,4 @@ def test_many_files_end_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(limits, "FILES", 5)
     for number in range(7):
         (tmp_path / str(number)).touch()
-    assert "more than 5 files" in localized(taken(os.getpid(), [tmp_path]).excess())
+    assert "more than 5 files" in localized(Taken(os.getpid(), [tmp_path]).excess())
