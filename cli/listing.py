@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -67,41 +68,31 @@ def check_command(options: Namespace) -> int:
     return max([_check(path, options) for path in paths], default=0)
 
 
-def _load(path: Path, options: Namespace) -> Profile:
-    return load_profile(path, hardware=options.hardware, overrides=options.overrides, domain=options.domain)
+def _problems(
+    path: Path, options: Namespace
+) -> tuple[Profile | None, Sequence[ProfileProblem], Sequence[ProfileProblem]]:
+    """Return a profile, if it can be loaded, what is wrong with it, and warnings."""
+    try:
+        profile = load_profile(path, hardware=options.hardware, overrides=options.overrides, domain=options.domain)
+    except ProfileError as error:
+        return None, error.problems, ()
+    return profile, faults_of(profile), profile.warnings
 
 
 def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:
     """Return the problems of a profile, for programs."""
-    problems: tuple[ProfileProblem, ...] = ()
-    warnings: tuple[ProfileProblem, ...] = ()
-    try:
-        profile = _load(path, options)
-    except ProfileError as error:
-        problems = error.problems
-    else:
-        problems, warnings = faults_of(profile), profile.warnings
-    return {
-        "path": str(path),
-        "problems": [asdict(problem) for problem in problems],
-        "warnings": [asdict(problem) for problem in warnings],
-    }
+    _profile, problems, warnings = _problems(path, options)
+    return {"path": str(path), "problems": [*map(asdict, problems)], "warnings": [*map(asdict, warnings)]}
 
 
 def _check(path: Path, options: Namespace) -> int:
     paint = Paint(sys.stdout)
-    try:
-        profile = _load(path, options)
-    except ProfileError as error:
-        for problem in error.problems:
-            write(_line(problem, paint, RED))
-        return error.exit_code
-    faults = faults_of(profile)
-    for problem in faults:
+    profile, problems, warnings = _problems(path, options)
+    for problem in problems:
         write(_line(problem, paint, RED))
-    for problem in profile.warnings:
+    for problem in warnings:
         write(_line(problem, paint, YELLOW, _("warning") + ": "))
-    if faults:
+    if profile is None or problems:
         return ProfileError.exit_code
     count = len(profile.nodes)
     nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
@@ -117,13 +108,5 @@ def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") ->
 
 
 def _as_json(entry: ProfileEntry) -> dict[str, object]:
-    return {
-        "name": entry.name,
-        "path": str(entry.path),
-        "title": dict(entry.title),
-        "about": dict(entry.about),
-        "lesson": entry.lesson,
-        "nodes": list(entry.nodes),
-        "panels": list(entry.panels),
-        "error": entry.error,
-    }
+    names = ("name", "path", "title", "about", "lesson", "nodes", "panels", "error")
+    return {**{name: getattr(entry, name) for name in names}, "path": str(entry.path)}

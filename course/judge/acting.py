@@ -10,7 +10,7 @@ import time
 
 from course.judge.evidence import MET, Evidence, Observation, missed
 from course.judge.fields import FieldMissingError, differs, field_at, shown
-from course.judge.missing import but, dead_nodes
+from course.judge.looking import but, dead_nodes
 from graph.data import Goal, GoalStatus, ParameterRow, Value
 from graph.observer.requests import CallService, CancelGoal, ForgetGoal, ReadParameters, SendGoal, SetParameters
 from launcher.profile.steps.checks import ActionCheck, NodeCheck, ParameterCheck, ServiceCheck

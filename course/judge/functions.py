@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from course.judge.evidence import MET, Evidence, Observation, missed
-from course.judge.missing import dead_nodes, no_messages
+from course.judge.looking import dead_nodes, no_messages
 from course.lessons.lesson import LessonFolder
 from launcher.profile.steps.checks import PublishCheck, PythonCheck
 from launcher.profile.steps.expressions import Drawn
@@ -93,7 +93,8 @@ async def _asked(
     lines = {node: evidence.lines(node, since_s) for node in evidence.nodes}
     since = {topic: since_s or evidence.fresh_s(topic, latched=topic == TF_STATIC) for topic in check.topics}
     seen = SeenMessages(
-        {topic: [(one.time_s, one.value) for one in evidence.messages(topic, at_s)] for topic, at_s in since.items()},
+        {topic: [(each.received_s, each.value) for each in evidence.messages(topic, since_s)]
+         for topic, since_s in since.items()},
         evidence.values,
         {node: [line.text for line in of_it] for node, of_it in lines.items()},
         {node: [(line.time_s, {"severity": line.severity.value, "text": line.text}) for line in of_it if line.logger]

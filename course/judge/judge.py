@@ -10,12 +10,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from course.judge.at_work import learners_nodes, not_at_work, running
+from course.judge.at_work import UnaskedFailures, ends, learners_nodes, not_at_work, running, start_anew
 from course.judge.evidence import Evidence
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
-from course.judge.missing import dead_nodes
-from course.judge.unasked import UnaskedFailures, ends, start_anew
+from course.judge.looking import dead_nodes
 from course.lessons.lesson import LessonFolder
 from course.results import CheckResult, State, StepResult
 from graph.data import GraphUpdate, Interest

@@ -11,7 +11,7 @@ from course.judge import acting, looking
 from course.judge.evidence import MET, Evidence, Observation, missed
 from course.judge.fields import shown
 from course.judge.functions import python
-from course.judge.missing import nobody_subscribes
+from course.judge.looking import nobody_subscribes
 from graph.data import TopicRow
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
