@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Coroutine, Sequence
 from importlib import import_module
-from typing import IO, NamedTuple, NoReturn, TypeAlias, TypeVar
+from typing import IO, Any, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from cli.options import add_language, add_profile_options, add_screen
 from launcher.processes.interrupts import held, run
@@ -17,7 +17,7 @@ from text.i18n import N_, _, ngettext
 from text.output import harmless
 
 Handler: TypeAlias = Callable[[argparse.Namespace], int]
-Work: TypeAlias = Callable[[argparse.Namespace], int | Coroutine[None, None, int]]
+Work: TypeAlias = Callable[[argparse.Namespace], int | Coroutine[Any, Any, int]]
 T = TypeVar("T", bound=Work)
 
 

@@ -3,9 +3,10 @@
 What keeps a node from its work comes before whatever a check has missed meanwhile: which check that
 is depends on when it happened, and the reason does not.
 
-Some nodes fail without having been asked for anything, some seconds after their start. At which step
-that happens depends on how fast all of it is, and so would the grade. Therefore such a node fails every step that needs it, also those that were judged before. Whether a node fails by
-itself, or by what a step has asked of it, is tried: it is started anew and left alone.
+Some nodes fail without having been asked for anything, some seconds after their start. At which step that happens
+depends on how fast all of it is, and so would the grade. Therefore such a node fails every step that needs it, also
+those that were judged before. Whether a node fails by itself, or by what a step has asked of it, is tried: it is
+started anew and left alone.
 """
 
 from __future__ import annotations

@@ -73,9 +73,7 @@ def load(folder: Path, named: str) -> Callable[[SeenMessages], object]:
 
 async def python(check: PythonCheck, evidence: Evidence, since_s: float) -> Observation:
     """Whatever the function says; it is asked again whenever something comes."""
-    function = evidence.functions.get(check.python)
-    if function is None:
-        function = await _in_thread(partial(load, evidence.folder, check.python), check.python)
+    function = evidence.functions.get(check.python) or await _loaded(evidence.folder, check.python)
     if check.over is not None:
         await evidence.let_pass(check.over)
     deadline_s = time.monotonic() + check.within
@@ -119,8 +117,13 @@ async def preloaded(lesson: LessonFolder) -> dict[str, Callable[[SeenMessages], 
             for each in (check, *(check.then if isinstance(check, PublishCheck) else ())):
                 if isinstance(each, PythonCheck) and each.python not in found:
                     with contextlib.suppress(LessonFaultError):
-                        found[each.python] = await _in_thread(partial(load, lesson.path, each.python), each.python)
+                        found[each.python] = await _loaded(lesson.path, each.python)
     return found
+
+
+async def _loaded(folder: Path, named: str) -> Callable[[SeenMessages], object]:
+    """Load a function, also from a file that takes for ever. Raises LessonFaultError."""
+    return await _in_thread(partial(load, folder, named), named)
 
 
 async def _in_thread(function: Callable[[], T], named: str) -> T:
