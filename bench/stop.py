@@ -10,21 +10,19 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import pty
 import random
-import select
 import statistics
 import sys
 import tempfile
 import threading
 import time
-import tty
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.processes import ROOT, deck, running, table
 from launcher.profile.load import load_profile
+from nodes.simulated.devices import PseudoSerial
 from robot.wire.pico import Drive, Halt, PicoDecoder, Release
 from robot.wire.tfluna import TofFrame
 from robot.wire.tfluna import encode as encode_tof
@@ -43,13 +41,13 @@ PRESSES = int(os.environ.get("BENCH_ROUNDS", "60"))
 PORTS = {"sonar_front": "tof_front", "sonar_rear": "tof_rear", "chassis": "pico"}
 CHAIN = (*PORTS, "safety_stop", "electronic_differential")
 FAR_M, NEAR_M = 3.0, 0.3
-LONGEST_S, AGAIN_S = 60.0, 1.0
+LONGEST_S, AGAIN_S, LOOK_S = 60.0, 1.0, 0.0005
 
 
 class Pico:
     """The simulated Pico on a serial line; records every line that it receives, with its time."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: PseudoSerial) -> None:
         self.heard: list[tuple[float, Message]] = []
         self._port = port
         self._pico = SimulatedPico(World())
@@ -68,23 +66,23 @@ class Pico:
         return at_s
 
     def live(self, ended: threading.Event) -> None:
-        """Read at once, and take a step of the simulation whenever one is due."""
+        """Read nearly at once, and take a step of the simulation whenever one is due."""
         due_s = time.monotonic()
         while not ended.is_set():
             due_s += STEP_S
-            while (left_s := due_s - time.monotonic()) > 0:
-                if select.select([self._port], [], [], left_s)[0]:
-                    data, now_s = os.read(self._port, 4096), time.monotonic()
-                    self.heard += [(now_s, line) for line in self._decoder.feed(data)]
-                    self._pico.feed(data)
-            send(self._port, self._pico.step())
+            while time.monotonic() < due_s:
+                data, now_s = self._port.read(), time.monotonic()
+                self.heard += [(now_s, line) for line in self._decoder.feed(data)]
+                self._pico.feed(data)
+                time.sleep(LOOK_S)
+            self._port.write(self._pico.step())
             self._pico.world.step()
 
 
 class Sonar:
     """A TF-Luna that measures `metres`, 100 times a second."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: PseudoSerial) -> None:
         self.metres = FAR_M
         self.told_s: dict[float, float] = {}
         """When each distance was first sent since this was cleared."""
@@ -94,28 +92,15 @@ class Sonar:
         while not ended.wait(0.01):
             metres = self.metres
             self.told_s.setdefault(metres, time.monotonic())
-            send(self._port, encode_tof(TofFrame(round(100 * metres), 1000, 25.0)))
-
-
-def send(port: int, data: bytes) -> None:
-    """Send to a line; what is not read for long is lost."""
-    with contextlib.suppress(BlockingIOError):
-        os.write(port, data)
+            self._port.write(encode_tof(TofFrame(round(100 * metres), 1000, 25.0)))
 
 
 @contextmanager
 def devices(folder: Path) -> Iterator[tuple[Pico, Sonar]]:
     """Emulate the Pico and both sonars, each on a thread and under its name in the folder."""
-
-    def port(name: str) -> int:
-        ours, theirs = pty.openpty()
-        tty.setraw(theirs)
-        os.set_blocking(ours, False)
-        (folder / name).symlink_to(os.ttyname(theirs))
-        return ours
-
     ended = threading.Event()
-    pico, front, rear = Pico(port("pico")), Sonar(port("tof_front")), Sonar(port("tof_rear"))
+    ports = [PseudoSerial(folder / name) for name in ("pico", "tof_front", "tof_rear")]
+    pico, front, rear = Pico(ports[0]), Sonar(ports[1]), Sonar(ports[2])
     threads = [threading.Thread(target=device.live, args=(ended,)) for device in (pico, front, rear)]
     for thread in threads:
         thread.start()
@@ -123,8 +108,9 @@ def devices(folder: Path) -> Iterator[tuple[Pico, Sonar]]:
         yield pico, front
     finally:
         ended.set()
-        for thread in threads:
+        for thread, port in zip(threads, ports, strict=True):
             thread.join()
+            port.unplug()
 
 
 def drives(line: Message) -> bool:

@@ -12,8 +12,7 @@ from pathlib import Path
 from cli.commands import Parser, command
 from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
-from course.grade.formats import CLASSROOM50, FORMATS, look, message, remarks, title, writer_of
-from course.grade.grades import Grade, GradeState, StepGrade
+from course.grade.grades import CLASSROOM50, FORMATS, Grade, GradeState, StepGrade, writer_of
 from course.grade.grading import WITHIN_S, Terms, grade_all
 from course.grade.submission import Submission, check_gradable, default_folder, submissions
 from course.grade.walls import bubblewrap_for
@@ -193,15 +192,15 @@ class _GradeReport:
     def step(self, _submission: Submission, step: StepGrade) -> None:
         """A step has been judged: not for good, for its node may still fail."""
         if self._count == 1 and self._aloud:
-            say_error(f"{title(step)}: {_(_STATES[step.result.state.value])}")
+            say_error(f"{step.title}: {_(_STATES[step.result.state.value])}")
 
     def _say_step(self, step: StepGrade) -> None:
         state = step.result.state
         words = f"{_(_STATES[state.value]):{_WIDTH}}"
         points = f"{step.result.earned}/{step.result.points}"
-        rest = f"{points:>6}  {title(step)}"
+        rest = f"{points:>6}  {step.title}"
         self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
-        for more in filter(None, (message(step), look(step))):
+        for more in filter(None, (step.message, step.look)):
             self._write(f"{'':{_WIDTH + 8}}{more}")
 
     def grade(self, grade: Grade) -> None:
@@ -222,7 +221,7 @@ class _GradeReport:
         for line in others:
             self._write(line)
         for grade in grades:
-            for words in remarks(grade):
+            for words in grade.remarks:
                 self._write(f"{plain(grade.student)}: {words}")
         passed = sum(grade.state is GradeState.PASSED for grade in grades)
         words = _("passed: {passed} of {n}")
@@ -231,7 +230,7 @@ class _GradeReport:
     def _end_of_one(self, grade: Grade) -> None:
         for step in grade.steps:
             self._say_step(step)
-        for words in remarks(grade):
+        for words in grade.remarks:
             self._write(words)
         self._write(
             _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})").format(
@@ -258,5 +257,5 @@ def _row(grade: Grade) -> list[str]:
         _(_STATES[grade.state.value]),
         f"{grade.points}/{grade.max_points}",
         *(str(step.result.earned) for step in grade.steps),
-        "" if first is None else f"{title(first)}: {message(first)}",
+        "" if first is None else f"{first.title}: {first.message}",
     ]

@@ -23,11 +23,15 @@ def domain(text: str) -> int:
         raise argparse.ArgumentTypeError(words) from error
 
 
-def seconds(text: str) -> float:
+def _number(text: str) -> float:
     try:
-        seconds = float(text)
+        return float(text)
     except ValueError:
-        seconds = math.nan
+        return math.nan
+
+
+def seconds(text: str) -> float:
+    seconds = _number(text)
     if not 0 <= seconds < math.inf:
         raise argparse.ArgumentTypeError(_("{text!r} is not a number of seconds").format(text=text))
     return seconds
@@ -35,10 +39,7 @@ def seconds(text: str) -> float:
 
 def rate(text: str) -> float:
     """Return the speed of a replay, relative to the original, 0.1 to 10."""
-    try:
-        rate = float(text)
-    except ValueError:
-        rate = math.nan
+    rate = _number(text)
     if not 0.1 <= rate <= 10:
         raise argparse.ArgumentTypeError(_("{text!r} is not a rate; expected 0.1 to 10").format(text=text))
     return rate
@@ -49,10 +50,7 @@ def bandwidth(text: str) -> int:
     number = text.lower().removesuffix("k")
     if number in ("off", "0"):
         return 0
-    try:
-        kilobytes = float(number)
-    except ValueError:
-        kilobytes = math.nan
+    kilobytes = _number(number)
     if not 1 <= kilobytes < math.inf:
         words = _("{text!r} is not a bandwidth; expected kB/s from 1 up, such as 40, or off")
         raise argparse.ArgumentTypeError(words.format(text=text))

@@ -42,3 +42,8 @@ def warn(key: str, text: str, fix: str) -> Finding:
 
 def fail(key: str, text: str, fix: str) -> Finding:
     return Finding(key, Level.FAIL, text, fix)
+
+
+def either(holds: bool, key: str, text: str, fix: str) -> Finding:
+    """Report something that is all right if it holds, and else will not work, or not reliably."""
+    return ok(key, text) if holds else warn(key, text, fix)

@@ -19,8 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from cli.child_python import python
-from cli.doctor.checks import permission_fix
+from cli.doctor.checks import child_python, permission_fix
 from cli.doctor.command import show
 from cli.doctor.finding import Finding, Level, warn
 from cli.preflight.answers import ask
@@ -181,7 +180,7 @@ def ask_camera(device: str, settings: Settings) -> tuple[str, Finding]:
 
 
 def _picture(name: str) -> Finding:
-    size = _run(python(PICTURE, name)).strip()
+    size = _run(child_python(PICTURE, name)).strip()
     if size:
         return good(_("a picture of {size}").format(size=size))
     others = holders(name)

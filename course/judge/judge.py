@@ -186,18 +186,14 @@ class Judge:
 
     async def _rest(self, shown: StepResult | None, restarts: int) -> None:
         """Wait until a node is started, or until it is time to look again."""
-        failed = len([c for c in shown.checks if c.state is State.PASSED]) if shown else 0
-        checks = self.steps[shown.id].checks if shown else ()
-        longest_s = checks[failed].rest_s if failed < len(checks) else AGAIN_S
-        if shown is not None and len(shown.checks) > len(checks):
-            longest_s = IDLE_S
-        until_s = time.monotonic() + longest_s
-        while (
-            (left_s := until_s - time.monotonic()) > 0
-            and self.evidence.restarts == restarts
-            and not self.evidence.ended
-        ):
-            await self.evidence.wait(left_s)
+        longest_s = AGAIN_S
+        if shown is not None:
+            checks, failed = self.steps[shown.id].checks, sum(one.state is State.PASSED for one in shown.checks)
+            if len(shown.checks) > len(checks):
+                longest_s = IDLE_S
+            elif failed < len(checks):
+                longest_s = checks[failed].rest_s
+        await self.evidence.holds(lambda: self.evidence.restarts != restarts, longest_s)
 
     async def step(
         self,

@@ -9,8 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from course.lessons.lesson import LessonFolder
-from course.lessons.mistakes import WRONG, Mistake
+from course.lessons.lesson import WRONG, LessonFolder, Mistake
 from course.proof.trial import Places, layered, trial
 from course.results import State, StepResult
 from launcher.errors import LauncherError

@@ -15,8 +15,7 @@ import psutil
 import pytest
 
 from course.grade import limits, submission
-from course.grade.formats import FORMATS, writer_of
-from course.grade.grades import Grade
+from course.grade.grades import FORMATS, Grade, writer_of
 from course.grade.grading import Terms, grade_all
 from course.grade.limits import Taken, descendants, remove_tree
 from course.grade.submission import Files, submissions
