@@ -11,7 +11,7 @@ from pathlib import Path
 from cli.commands import Parser, command
 from cli.options import add_json, add_profile_options
 from launcher.errors import ProfileError, ProfileProblem
-from launcher.profile.catalog import ProfileEntry, find_profile, list_profiles
+from launcher.profile.catalog import find_profile, list_profiles
 from launcher.profile.defaults import shown
 from launcher.profile.load import Profile, faults_of, load_profile
 from text.i18n import _, localized, ngettext, pick
@@ -24,7 +24,9 @@ def list_command(options: Namespace) -> int:
     """Show all profiles, broken ones with their first problem."""
     entries = list_profiles()
     if options.json:
-        write(json_text([_as_json(entry) for entry in entries], indent=2))
+        names = ("name", "path", "title", "about", "lesson", "nodes", "panels", "error")
+        told = [{**{name: getattr(entry, name) for name in names}, "path": str(entry.path)} for entry in entries]
+        write(json_text(told, indent=2))
         return 0
     width = max((len(entry.name) for entry in entries), default=0)
     paint = Paint(sys.stdout)
@@ -62,9 +64,13 @@ def check_command(options: Namespace) -> int:
         return preflight_command(options)
     paths = [find_profile(options.profile)] if options.profile else [entry.path for entry in list_profiles()]
     if options.json:
-        found = [_checked(path, options) for path in paths]
-        write(json_text(found, indent=2))
-        return 2 if any(each["problems"] for each in found) else 0
+        found = {path: _problems(path, options)[1:] for path in paths}
+        told = [
+            {"path": str(path), "problems": [*map(asdict, problems)], "warnings": [*map(asdict, warnings)]}
+            for path, (problems, warnings) in found.items()
+        ]
+        write(json_text(told, indent=2))
+        return 2 if any(problems for problems, _warnings in found.values()) else 0
     return max([_check(path, options) for path in paths], default=0)
 
 
@@ -77,12 +83,6 @@ def _problems(
     except ProfileError as error:
         return None, error.problems, ()
     return profile, faults_of(profile), profile.warnings
-
-
-def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:
-    """Return the problems of a profile, for programs."""
-    _profile, problems, warnings = _problems(path, options)
-    return {"path": str(path), "problems": [*map(asdict, problems)], "warnings": [*map(asdict, warnings)]}
 
 
 def _check(path: Path, options: Namespace) -> int:
@@ -105,8 +105,3 @@ def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") ->
     words = localized(problem.words)
     where = plain(f"{problem.where}: ")
     return paint(where, colour) + kind + words.removeprefix(where)
-
-
-def _as_json(entry: ProfileEntry) -> dict[str, object]:
-    names = ("name", "path", "title", "about", "lesson", "nodes", "panels", "error")
-    return {**{name: getattr(entry, name) for name in names}, "path": str(entry.path)}

@@ -79,14 +79,11 @@ class DomainView:
                 return
             if update.error:
                 raise UsageError(update.error)
-            self._note(update)
+            now_s = time.monotonic()
+            self._joined_s = min(self._joined_s, now_s)
+            if self._size != (size := (len(update.nodes), len(update.topics), len(update.services))):
+                self._size, self._news_s = size, now_s
             yield update
-
-    def _note(self, update: GraphUpdate) -> None:
-        now_s = time.monotonic()
-        self._joined_s = min(self._joined_s, now_s)
-        if self._size != (size := (len(update.nodes), len(update.topics), len(update.services))):
-            self._size, self._news_s = size, now_s
 
     def refuse_empty(self, update: GraphUpdate) -> None:
         """Raise UsageError if nobody but Deck's own observers is in the domain."""

@@ -82,11 +82,7 @@ def show(findings: Iterable[Finding], paint: Paint) -> None:
     """Write a line for each finding, with the fix below it."""
     width = max(len(_(word)) for word, _colour in LOOKS.values())
     for finding in findings:
-        _show(finding, paint, width)
-
-
-def _show(finding: Finding, paint: Paint, width: int) -> None:
-    word, colour = LOOKS[finding.level]
-    write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
-    if finding.fix:
-        write(f"{'':{width}}  {paint('-> ' + finding.fix, DIM)}")
+        word, colour = LOOKS[finding.level]
+        write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
+        if finding.fix:
+            write(f"{'':{width}}  {paint('-> ' + finding.fix, DIM)}")

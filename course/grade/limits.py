@@ -49,15 +49,12 @@ def limit_this_process(longest_s: float) -> None:
 
 def _tasks_of_user() -> int:
     """Count the threads of this user, which is what the kernel limits."""
-    return sum(map(_tasks, psutil.pids()))
-
-
-def _tasks(pid: int) -> int:
-    """Return how many threads a process has; none if it is another user's, or gone."""
-    with suppress(OSError):
-        if Path(f"/proc/{pid}").stat().st_uid == os.getuid():
-            return len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208
-    return 0
+    found = 0
+    for pid in psutil.pids():
+        with suppress(OSError):
+            if Path(f"/proc/{pid}").stat().st_uid == os.getuid():
+                found += len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208
+    return found
 
 
 class Taken:
@@ -74,10 +71,11 @@ class Taken:
         for one in family:
             self._add_removed(one)
         self.processes = len(family)
-        self.memory_bytes = sum(_memory_bytes(one) for one in family)
+        # What is read from files does not count.
+        self.memory_bytes = sum(_sum_of(f"/proc/{one}/status", "RssAnon", "RssShmem") for one in family)
         if self.memory_bytes > MEMORY_BYTES:
-            # What they share counts once.
-            self.memory_bytes = sum(_share_bytes(one) for one in family)
+            # What they share counts once; takes longer (proc(5), Linux 5.4).
+            self.memory_bytes = sum(_sum_of(f"/proc/{one}/smaps_rollup", "Pss_Anon", "Pss_Shmem") for one in family)
         self.disk_bytes = sum(self._sizes.values())
 
     def excess(self) -> str:
@@ -150,16 +148,6 @@ def _lives(process: psutil.Process) -> bool:
         return process.status() != psutil.STATUS_ZOMBIE or process.num_threads() > 1
     except psutil.Error:
         return False
-
-
-def _memory_bytes(pid: int) -> int:
-    """Return what a process has in memory, but for what is read from files."""
-    return _sum_of(f"/proc/{pid}/status", "RssAnon", "RssShmem")
-
-
-def _share_bytes(pid: int) -> int:
-    """Return its part of that; takes longer (smaps_rollup of proc(5), Linux 5.4)."""
-    return _sum_of(f"/proc/{pid}/smaps_rollup", "Pss_Anon", "Pss_Shmem")
 
 
 def _sum_of(path: str, *names: str) -> int:
