@@ -13,25 +13,20 @@ import shlex
 import shutil
 import sys
 import tempfile
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph
-from cli.shell.elsewhere import for_bash, for_fish, for_zsh
 from launcher.domain.discovery import settings_of_discovery
 from launcher.domain.domain import settings_of_domain
 from launcher.errors import NotRunningError
 from launcher.ros_tools import own_folders, ros_tools, without_wheels
-from text.i18n import _
+from text.i18n import N_, _, localized
 from text.output import say_error
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
+from text.sentences import say
 
 KNOWN = ("bash", "zsh", "fish", "sh", "dash", "ksh")
 LABEL = "DECK_SHELL"
@@ -61,6 +56,67 @@ _SH = """\
 [ -n "$DECK_ENV" ] && [ -r "$DECK_ENV" ] && . "$DECK_ENV"
 PATH=$DECK_SHELL_PATH:$PATH
 PS1="($DECK_SHELL) ${PS1-$ }"
+"""
+_SPACE = N_("the Space tab and `deck view` show frames, models and what sensors see")
+_GRAPH = N_("the Flow and Graph tabs show who speaks to whom")
+_SIMULATED = N_("`deck run robot` drives a simulated robot")
+_DEPENDENCIES = N_("what the lessons need is here; other packages need a ROS 2 of your own")
+_TYPES = N_("ROS 2 has `ros2 interface show`")
+INSTEAD = {
+    "rviz2": _SPACE, "rviz": _SPACE,
+    "rqt": _GRAPH, "rqt_graph": _GRAPH,
+    "rqt_console": N_("the Logs tab and `deck logs` show what the nodes log"),
+    "rqt_plot": N_("the Topics tab shows values as they come"),
+    "rqt_image_view": N_("the Topics tab shows pictures"),
+    "plotjuggler": N_("the Topics tab shows values as they come"),
+    "gazebo": _SIMULATED, "gz": _SIMULATED, "ign": _SIMULATED, "gzserver": _SIMULATED,
+    "rosdep": _DEPENDENCIES, "vcs": _DEPENDENCIES,
+    "rosbag": N_("`ros2 bag`, or `deck record` and `deck replay`"),
+    "roscore": N_("ROS 2 has no master: nodes find each other by themselves"),
+    "roslaunch": N_("a profile starts the nodes of a lesson together: `deck run`"),
+    "rosrun": N_("ROS 2 has `ros2 run`"),
+    "rostopic": N_("ROS 2 has `ros2 topic`"),
+    "rosnode": N_("ROS 2 has `ros2 node`"),
+    "rosservice": N_("ROS 2 has `ros2 service`"),
+    "rosparam": N_("ROS 2 has `ros2 param`"),
+    "rosmsg": _TYPES, "rossrv": _TYPES,
+    "catkin_make": N_("ROS 2 builds with `colcon build`"),
+    "catkin": N_("ROS 2 builds with `colcon build`"),
+}  # fmt: skip
+"""By the name of the program: what there is in its place, as a sentence to be translated."""
+_NOT_FOUND = """\
+deck_instead() {{
+case $1 in
+{cases}
+*) return 1 ;;
+esac
+}}
+"""
+_NOT_FOUND_BASH = """\
+if declare -F command_not_found_handle >/dev/null; then
+eval "deck_not_found_before$(declare -f command_not_found_handle | sed '1s/[^ (]*//')"
+else
+deck_not_found_before() { printf '%s: command not found\\n' "$1" >&2; return 127; }
+fi
+command_not_found_handle() { deck_instead "$1" && return 127; deck_not_found_before "$@"; }
+"""
+_NOT_FOUND_ZSH = """\
+if (( $+functions[command_not_found_handler] )); then
+functions[deck_not_found_before]=$functions[command_not_found_handler]
+else
+deck_not_found_before() { print -u2 "zsh: command not found: $1"; return 127 }
+fi
+command_not_found_handler() { deck_instead "$1" && return 127; deck_not_found_before "$@" }
+"""
+_NOT_FOUND_FISH = """\
+functions -q fish_command_not_found; and functions -c fish_command_not_found deck_not_found_before
+function fish_command_not_found
+switch $argv[1]
+{cases}
+case '*'
+functions -q deck_not_found_before; and deck_not_found_before $argv
+end
+end
 """
 
 
@@ -150,19 +206,36 @@ def _interactive(shell: str, environ: dict[str, str]) -> list[str]:
     # The shell replaces this process, so nobody is left to remove them: the files do it themselves.
     gone = f"rm -rf -- {shlex.quote(str(folder))}\n"
     if kind == "bash":
-        (folder / "bashrc").write_text(gone + _BASH + for_bash(), encoding="utf-8")
+        (folder / "bashrc").write_text(gone + _BASH + _functions() + _NOT_FOUND_BASH, encoding="utf-8")
         return [shell, "--rcfile", str(folder / "bashrc"), "-i"]
     if kind == "zsh":
         environ["DECK_ZDOTDIR"] = environ.get("ZDOTDIR", environ.get("HOME", "/"))
         environ["DECK_OWN_ZDOTDIR"] = environ["ZDOTDIR"] = str(folder)
         (folder / ".zshenv").write_text(_ZSH_ENV, encoding="utf-8")
-        (folder / ".zshrc").write_text(gone + _ZSH + for_zsh(), encoding="utf-8")
+        (folder / ".zshrc").write_text(gone + _ZSH + _functions() + _NOT_FOUND_ZSH, encoding="utf-8")
         return [shell, "-i"]
     if kind == "fish":
         folder.rmdir()
-        return [shell, "--init-command", _FISH + for_fish(), "-i"]
+        return [shell, "--init-command", _FISH + _for_fish(), "-i"]
     environ["DECK_ENV"] = environ.get("ENV", "")
     environ["ENV"] = str(folder / "shrc")
     again = 'ENV=$DECK_ENV; unset DECK_ENV; [ -n "$ENV" ] || unset ENV\n'
     (folder / "shrc").write_text(gone + _SH + again, encoding="utf-8")
     return [shell, "-i"]
+
+
+def _for_fish() -> str:
+    cases = (f"case {name}\necho {shlex.quote(line)} >&2" for name, line in _lines())
+    return _NOT_FOUND_FISH.format(cases="\n".join(cases))
+
+
+def _functions() -> str:
+    cases = (f"{name}) echo {shlex.quote(line)} >&2 ;;" for name, line in _lines())
+    return _NOT_FOUND.format(cases="\n".join(cases))
+
+
+def _lines() -> list[tuple[str, str]]:
+    return [
+        (name, localized(say("{name} is not in Deck: {instead}", name=name, instead=say(words))))
+        for name, words in INSTEAD.items()
+    ]
