@@ -77,7 +77,7 @@ def requirements() -> dict[str, list[str]]:
         # Together, so that what both need has one version.
         **{extra: [*of_all, *extras[extra]] for extra in APART},
         **{f"ros-{name}": [*of_all, *extras[extra]] for name, extra in EXTRAS.items()},
-        **{f"interfaces-{name}": list(filter(None, (for_distro(line, name) for line in build))) for name in EXTRAS},
+        **{f"interfaces-{name}": [for_distro(line, name) for line in build] for name in EXTRAS},
     }
 
 
