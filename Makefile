@@ -89,7 +89,7 @@ architecture: .venv/.ready
 	@touch $@
 
 site: catalogues .venv/.docs
-	@exec .venv/bin/mkdocs build --strict --quiet
+	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict
 
 # A folder without the mark of scripts/environment.py belongs to the user.
 clean:

@@ -47,13 +47,15 @@ class Shot(NamedTuple):
     text: str
     settles_s: float = 1.0
     """How long it takes until there is something to see."""
+    ready: str = ""
+    """What has to stand there before the last key is pressed."""
 
 
 OF_THE_LESSON = (Shot("lesson", ("L", "C"), "✗", 2.0),)
 OF_THE_BRAIN = (
     Shot("flow", ("6",), "/drive_safe", 2.0),
     Shot("topics", ("2", *["down"] * 7), "steering_angle", 3.0),
-    Shot("composer", ("3", "ctrl+s"), "/drive_safe", 3.0),
+    Shot("composer", ("3", "ctrl+s"), "/wheel_commands", 3.0, "✓"),
     Shot("logs", ("4",), "safety_stop"),
     Shot("graph", ("5",), "/brain_state", 2.0),
     Shot("wall", ("0",), "", 6.0),
@@ -155,7 +157,12 @@ def picker(language: str) -> None:
 def screens(terminal: Terminal, language: str, shots: tuple[Shot, ...]) -> None:
     """Go from one screen to the next; where the expected text does not come, say so and go on."""
     for shot in shots:
-        terminal.press(*shot.keys)
+        for key in shot.keys:
+            # A screen that opens does not hear the next one.
+            wait_for_whole_frame(terminal)
+            if key == shot.keys[-1]:
+                comes(partial(_shows, terminal, shot.ready), within_s=30)
+            terminal.press(key)
         if not comes(partial(_shows, terminal, shot.text), within_s=30):
             print(f"{shot.name}: {shot.text!r} is not there\n{terminal.text()}", file=sys.stderr)
         time.sleep(shot.settles_s)

@@ -37,8 +37,7 @@ if TYPE_CHECKING:
 
 TABLE = re.compile(r"^<!-- (keys|commands|lessons)(?:: ([\w ]+))? -->$", re.MULTILINE)
 STANDS_FOR = re.compile(r"\s*\[[^\]]*\]\(\.\./([\w.]+\.md)\)\s*")
-LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s:]+)\)")
-PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)\s:]+)\)")
+LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s:]+)\)")
 HEADS = {
     "en": {
         "keys": ("key", "action", "what it does"),
@@ -73,24 +72,24 @@ def _stands_for(file: File) -> str:
 
 
 def _turn_links(markdown: str, source: str, here: str, pages: dict[str, str]) -> str:
-    """Make links between files of the repository links between pages; where there is no page, leave the words."""
+    """Make links between files of the repository links between pages.
+
+    Where a file has no page, leave the words; where there is no such file, leave the link for MkDocs to complain of.
+    """
     folder = posixpath.dirname(source)
 
-    def place(target: str) -> str:
-        path, hash_, anchor = target.partition("#")
-        page = pages.get(posixpath.normpath(posixpath.join(folder, path)))
-        return "" if page is None else posixpath.relpath(page, posixpath.dirname(here) or ".") + hash_ + anchor
-
     def turned(found: re.Match[str]) -> str:
-        words, target = found[1], found[2]
-        if target.startswith("#"):
-            return found[0]
+        mark, words, target = found.groups()
+        path, hash_, anchor = target.partition("#")
+        file = posixpath.normpath(posixpath.join(folder, path))
         # The site has a switch for the language.
         if words in ("По-русски", "In English"):
             return ""
-        return f"[{words}]({there})" if (there := place(target)) else words
+        if path and file in pages:
+            there = posixpath.relpath(pages[file], posixpath.dirname(here) or ".")
+            return f"{mark}[{words}]({there}{hash_}{anchor})"
+        return words if path and not mark and (ROOT / file).exists() else found[0]
 
-    markdown = PICTURE.sub(lambda found: f"![{found[1]}]({place(found[2])})", markdown)
     return LINK.sub(turned, markdown)
 
 
