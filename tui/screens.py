@@ -90,7 +90,7 @@ SCREENS = {
         "WallScreen",
         "0",
         N_("Wall"),
-        N_("Big numbers and a big picture, to be read across a room; Esc goes back."),
+        N_("Distances, picture, wheels and words as large as possible, to be read across a room; Esc goes back."),
     ),
 }
 """In the order in which the top line names them."""
@@ -103,6 +103,7 @@ DIALOGS = (
     "tui.lifecycle.dialogs",
     "tui.topics.actions_of_publish",
     "tui.tour.screen",
+    "tui.viewing.dialog",
 )
 """Modules that define actions of their own, imported when first shown."""
 

@@ -46,6 +46,11 @@ except KeyboardInterrupt: sys.exit(0)
 """
 
 
+def _is_child(pid: int, parent: int) -> bool:
+    process = read_process(pid)
+    return process is not None and process.parent == parent
+
+
 async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -> None:
     client = await start({"one": {"exec": SLEEPER}, "two": {"exec": SLEEPER}})
     for name in client.nodes:
@@ -53,7 +58,8 @@ async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -
         process = read_process(pid)
         assert process is not None
         assert (process.group, process.session) == (pid, pid)
-        assert process.parent == client.session.supervisor_pid
+        # The process that has forked it tells of it first, and then ends.
+        await until(partial(_is_child, pid, client.session.supervisor_pid), "a child of the supervisor")
         assert (read_marks(pid) or {}).get("DECK_RUN_ID") == client.session.run_id
 
 
