@@ -40,6 +40,7 @@ from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
 from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
+from launcher.supervisor.plan import plan_of, stop_waves
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, VERSION, encode, pack, unpack
 from text.nested import read_json
@@ -95,8 +96,6 @@ async def launch(
     """
     supervisor = supervisor or StartingSupervisor()
     try:
-        from launcher.supervisor.plan import plan_of  # With pydantic, for which others need not wait.
-
         folders = {"run_dir": str(run_dir()), "log_dir": str(log_dir())}
         read = await asyncio.to_thread(_read, profile, hardware, tuple(overrides), domain)
         plan = plan_of(read, **folders, foreground=foreground, node_lang=node_lang, within=within)
@@ -371,8 +370,6 @@ class SupervisorClient:
         if self._closed.is_set():
             await self.aclose()
             return
-        from launcher.supervisor.plan import stop_waves
-
         waves = len(stop_waves(self.nodes, {name: one.needs for name, one in self.nodes.items()}))
         patient_s = HEARD_WITHIN_S + waves * STOPPED_WITHIN_S
         asked = self._ask("shutdown", now=now)

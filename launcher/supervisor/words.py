@@ -11,7 +11,7 @@ from launcher.status import HALTED, NodeFault
 from text.sentences import say
 
 if TYPE_CHECKING:
-    # Clients list processes by `who`, and need no pydantic for it.
+    # Clients list processes by `who`, and need no profile for it.
     from launcher.profile.node import Node, Ready
 
 NOT_EXECUTABLE, NOT_FOUND = 126, 127
