@@ -16,10 +16,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError, PydanticOmit
 
 from launcher import node_program
+from text.robot import Role, robot
 from text.ros_names import ROS_NAME
 from text.sentences import Words, say
 from text.yaml_scalars import in_quotes
@@ -38,11 +39,6 @@ LONGEST_NODE_NAME = 255
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9]*")
-_DRIVERS = frozenset(
-    f"nodes.{name}"
-    for name in ("ai_brain", "ai_driver", "chassis", "drive_to_point", "electronic_differential", "llm_parser")
-)
-"""The nodes that command the wheels: two sessions with any of them never share a domain."""
 _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTNG_", "AMENT_")
 """Variables read when an interpreter or a library is loaded: after a fork it is too late."""
 
@@ -208,6 +204,12 @@ class Node(Document):
         description="Python module to run as a ROS node, named like its key: `nodes.hello`; or a"
         " file of your own, relative to the profile: `./my_sonar.py`.",
     )
+    roles: tuple[Role, ...] = Field(
+        default=(),
+        strict=False,
+        description="What it is for the robot: `[drives]` for one that commands the wheels; by default what a node"
+        " of Deck says of itself.",
+    )
     exec: Annotated[Command | None, AsText()] = Field(
         default=None,
         strict=False,
@@ -258,6 +260,14 @@ class Node(Document):
     )
     """Absolute; by default the folder in which the launcher was started."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _announced(cls, given: object) -> object:
+        """Fill in the roles that a module says of itself."""
+        if not isinstance(given, dict) or "roles" in given or not isinstance(run := given.get("run"), str):
+            return given
+        return {**given, "roles": robot().roles.get(run, ())}
+
     @property
     def command(self) -> str:
         """Its program, for display."""
@@ -279,7 +289,7 @@ class Node(Document):
     @property
     def drives(self) -> bool:
         """Whether it commands the wheels."""
-        return self.run in _DRIVERS
+        return "drives" in self.roles
 
     @property
     def file(self) -> str:

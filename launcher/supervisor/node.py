@@ -119,6 +119,7 @@ class SupervisedNode:
             cpu_percent=usage.cpu_percent if usage and now else None,
             memory_bytes=usage.memory_bytes if usage and now else None,
             needs=self.plan.needs,
+            roles=self.plan.roles,
             file=self.plan.file,
             fault=fault or (crash.fault if crash is not None else None),
         )

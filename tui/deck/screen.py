@@ -18,6 +18,7 @@ from robot.topics import AI_COMMAND
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
+from text.robot import robot
 from text.sentences import reason_of
 from tui.actions import bindings
 from tui.deck.actions import DECK_ACTIONS
@@ -59,7 +60,6 @@ if TYPE_CHECKING:
     from tui.session.messages import GraphChanged, LanguageChanged, LogArrived, StatusChanged
     from tui.widgets.rows import Rows
 
-DRIVER = "nodes.ai_driver"
 COMMANDS_TYPE = "std_msgs/msg/String"
 SMALL = (60, 18)
 """Columns and rows of the terminal below which panels are hidden."""
@@ -215,7 +215,7 @@ class LessonDeck(DeckScreen):
             return row is not None and row.subscribers > 0
         if self.feed.link is None:
             return False
-        return any(DRIVER in (node.command, f"nodes.{node.name}") for node in self.feed.nodes.values())
+        return any("words" in (node.roles or robot().named(node.name)) for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
         """Focus the command line at once, so that it receives the next key."""

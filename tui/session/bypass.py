@@ -1,7 +1,7 @@
 """Publishers that bypass the gate and the differential, or speak for a sonar of the gate; and what is normal.
 
 The nodes of the session may publish anything that their profile says. Any other publisher on these topics bypasses
-the gate, and so does a second publisher with the name of one of them. If the session has no such node of Deck's, the
+the gate, and so does a second publisher with the name of one of them. If no node of the session has that role, the
 owner of the topic is unknown; then only two publishers are reported, and so it is with the distances, of which the
 gate takes the lowest.
 """
@@ -39,10 +39,9 @@ FORGOTTEN_S = 25.0
 
 @dataclass(frozen=True)
 class ReservedTopic:
-    """A topic on which one node of Deck's should be the only publisher."""
+    """A topic on which the node with one role should be the only publisher."""
 
-    module: str
-    """That of the node."""
+    role: str
     topic: str
     type_name: str
     names: frozenset[str]
@@ -51,17 +50,9 @@ class ReservedTopic:
 
 RESERVED = (
     ReservedTopic(
-        "nodes.safety_stop",
-        DRIVE_SAFE,
-        "ackermann_msgs/msg/AckermannDriveStamped",
-        frozenset({"/safety_node", "/safety_stop"}),
+        "gate", DRIVE_SAFE, "ackermann_msgs/msg/AckermannDriveStamped", frozenset({"/safety_node", "/safety_stop"})
     ),
-    ReservedTopic(
-        "nodes.electronic_differential",
-        WHEEL_COMMANDS,
-        "sensor_msgs/msg/JointState",
-        frozenset({"/electronic_differential"}),
-    ),
+    ReservedTopic("wheels", WHEEL_COMMANDS, "sensor_msgs/msg/JointState", frozenset({"/electronic_differential"})),
 )
 
 
@@ -138,7 +129,7 @@ class BypassDetector:
 def _on_topics_of(
     reserved: ReservedTopic, rows: Iterable[TopicRow], nodes: Mapping[str, NodeStatus], ours: Collection[str]
 ) -> Iterator[BypassingPublisher]:
-    owners = {f"/{node.name}": node for node in nodes.values() if node.command == reserved.module}
+    owners = {f"/{node.name}": node for node in nodes.values() if reserved.role in node.roles}
     for row in rows:
         if row.name != reserved.topic and reserved.type_name not in row.type_names:
             continue
