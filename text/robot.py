@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib import import_module
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Role = Literal["drives", "gate", "wheels", "brain", "words", "head", "driver", "simulator"]
 """What a node is for the robot, whatever it is called:
@@ -21,12 +21,49 @@ simulated, and have trouble by its parameters.
 """
 
 
+class SoleTopic(NamedTuple):
+    """What the wheels obey: only the node with one role may publish it."""
+
+    role: Role
+    topic: str
+    type_name: str
+    names: frozenset[str]
+    """Names of the node when no profile contains it."""
+
+
+class PanelEntry(NamedTuple):
+    """What a panel is called, and its topics."""
+
+    title: str
+    """The name in the list of lessons, to be translated."""
+    needs: tuple[str, ...] = ()
+    """Topics of others: if one of them exists, the panel has something to show."""
+
+
 @dataclass(frozen=True)
 class Robot:
     """One robot; a field that it does not give is empty."""
 
     roles: Mapping[str, tuple[Role, ...]] = field(default_factory=dict)
     """Of its nodes, by their modules; a profile may say others."""
+    panels: Mapping[str, PanelEntry] = field(default_factory=dict)
+    """In the order in which they are shown."""
+    words: str = ""
+    """Where it hears words, as std_msgs/String."""
+    moving: frozenset[str] = frozenset()
+    """Topics that move it, whatever their type."""
+    sole: tuple[SoleTopic, ...] = ()
+    of_many: frozenset[str] = frozenset()
+    """Topics that several nodes publish together."""
+    may_wait: frozenset[str] = frozenset()
+    """Topics that need no publisher: people speak there, or drivers that a lesson may do without."""
+    frames: Mapping[str, str] = field(default_factory=dict)
+    """Of topics with distances and no header: where they are measured."""
+    mounts: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Where these frames are if nobody says so: metres ahead of base_link, and the heading there."""
+    story: tuple[str, ...] = ()
+    """Topics that show what followed from a word; causes before effects, which decides the order of messages with
+    the same time."""
 
     def named(self, node: str) -> tuple[Role, ...]:
         """Return the roles of a node of which no more than the name is known: those of the module of that name."""

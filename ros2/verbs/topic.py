@@ -15,8 +15,8 @@ from ros2.filling import filled, read
 from ros2.joining import SPIN_S, joined
 from ros2.printing import to_yaml
 from ros2.verb import arg, either, flag, verb
+from safety.topics import EMERGENCY_STOP
 from text.plain import plain
-from text.ros_names import EMERGENCY_STOP
 
 if TYPE_CHECKING:
     import argparse

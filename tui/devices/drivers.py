@@ -12,10 +12,10 @@ from rich.cells import cell_len
 
 from graph.diagnostics import StatusLevel
 from graph.observer.requests import ReadParameters, SetParameters
-from robot.topics import DIAGNOSTICS
 from text.figures import elapsed, whole
 from text.i18n import N_, _, localized
 from text.plain import plain
+from text.ros_names import DIAGNOSTICS
 from tui.panels.panel import row_of
 from tui.widgets.rows import Cell, Column, Row, Rows
 

@@ -6,8 +6,8 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from robot.safety.gate_report import STOPPED, Gate
-from robot.topics import DRIVE_TELEOP
+from safety.gate_report import STOPPED, Gate
+from safety.topics import DRIVE_TELEOP
 from text.figures import figure
 from text.i18n import N_, _
 from text.plain import plain

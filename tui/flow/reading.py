@@ -25,7 +25,6 @@ from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.outcome import words as outcome_words
 from tui.outcome.model_usage import COMPOSER, brain_reports, usage_noted
 from tui.panels.voice import LEVELS, heard
-from tui.session.past import FLOW_TOPICS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
     from launcher.status import LogLine, NodeStatus
     from tui.outcome.model_usage import UsageFigures
 
-TOPICS = FLOW_TOPICS
+TOPICS = robot().story
 
 SPOKEN_LEVEL = 3
 """Of the eight levels of loudness: a quieter sound is not a voice (about -38 dB)."""

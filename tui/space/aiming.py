@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from robot.topics import GOAL_POSE, INITIAL_POSE
 from space.drawing.paints import Tint
 from space.drawing.shapes import Strokes, arrow, places
 from space.transform import Transform, quaternion_from_rpy
 from text.i18n import _, decimal
 from text.plain import plain
+from text.ros_names import GOAL_POSE, INITIAL_POSE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robot.topics import SONAR_FRAMES
-from robot.world.world import Body
 from space.buffer import NoTransformError, TransformBuffer
 from space.drawing.picture import extent_of, picture
 from space.drawing.shapes import Speckles, places
 from space.placing import Placer, frame_shapes
 from space.transform import Transform
+from text.robot import robot
 from text.sentences import say
 from tui.space.layers import SpaceLayers
 
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
     from space.transform import Vector
     from tui.space.aiming import Aim
 
-BODY = Body()
 BASE = "base_link"
 AROUND = 0.05
 """Share of the picture that is left free around everything when it is fitted."""
@@ -34,12 +31,10 @@ LEAST_M = 2.0
 
 
 def _mounts() -> dict[str, tuple[str, Transform]]:
-    """Where the sonars of the course are, for robots that do not publish it."""
-    front, rear = SONAR_FRAMES.values()
-    ahead, behind = BODY.length_m - BODY.behind_m, -BODY.behind_m
+    """Where the robot's sonars are, as long as it does not publish that."""
     return {
-        front: (BASE, Transform((ahead, 0.0, 0.0))),
-        rear: (BASE, Transform.from_rpy((behind, 0.0, 0.0), (0.0, 0.0, math.pi))),
+        frame: (BASE, Transform.from_rpy((ahead_m, 0.0, 0.0), (0.0, 0.0, heading_rad)))
+        for frame, (ahead_m, heading_rad) in robot().mounts.items()
     }
 
 

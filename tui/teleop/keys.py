@@ -14,8 +14,9 @@ from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
 from robot.limits import SPEED, STEERING
-from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP
+from robot.topics import DRIVE, DRIVE_SAFE
 from robot.words import STOP, DriveSetpoint
+from safety.topics import DRIVE_TELEOP
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -13,9 +13,10 @@ from textual.message import Message
 
 from graph.observer.requests import Hold, LetGo, PrepareHold
 from graph.publishing.dead_man_switch import HeldCommand
-from robot.safety.gate_report import Gate, gate_in
-from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP, SAFETY_STATE, WHEEL_COMMANDS
+from robot.topics import DRIVE, DRIVE_SAFE, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
+from safety.gate_report import Gate, gate_in
+from safety.topics import DRIVE_TELEOP, SAFETY_STATE
 from text.i18n import N_, _
 from text.plain import plain
 from tui import clock

@@ -8,7 +8,8 @@ from textual.containers import Container, Vertical
 from textual.widgets import Static
 
 from launcher.profile.panels import panels_for
-from robot.topics import BATTERY, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
+from robot.topics import BATTERY, ODOMETRY, SONAR_FRONT, SONAR_REAR, WHEEL_COMMANDS
+from safety.topics import SAFETY_STATE
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions import bindings

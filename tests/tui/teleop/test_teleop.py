@@ -22,8 +22,9 @@ from graph.observer.requests import (
     StopCommanding,
 )
 from launcher.events import ClosedEvent
-from robot.safety.gate_report import gate_in
-from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
+from robot.topics import DRIVE
+from safety.gate_report import gate_in
+from safety.topics import DRIVE_TELEOP, SAFETY_STATE
 from tests.tui.recorded import (
     NOW_S,
     TOPICS,
