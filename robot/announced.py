@@ -11,6 +11,7 @@ from robot.topics import (
     CAMERA,
     DRIVE,
     DRIVE_SAFE,
+    DRIVE_TELEOP,
     GOAL_POSE,
     HEAD_STATE,
     HEARD,
@@ -57,6 +58,7 @@ ROBOT = Robot(
         "composer": PanelEntry(N_("composer")),
     },
     words=AI_COMMAND,
+    keys=DRIVE_TELEOP,
     moving=frozenset(
         {
             WHEEL_COMMANDS,

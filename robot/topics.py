@@ -5,7 +5,6 @@ Each name is defined only here. ROS's own names (/rosout, /clock) are not the ro
 
 from __future__ import annotations
 
-from safety.topics import DRIVE_TELEOP
 from text import ros_names
 
 AI_COMMAND = "/ai_command"
@@ -17,6 +16,7 @@ DIAGNOSTICS = ros_names.DIAGNOSTICS
 DRIVE = "/drive"
 DRIVE_ACTION = "/drive_action"
 DRIVE_SAFE = "/drive_safe"
+DRIVE_TELEOP = "/drive_teleop"
 DRIVE_TO_POINT = "drive_to_point"
 """An action, relative to the namespace of its node."""
 GOAL_POSE = ros_names.GOAL_POSE

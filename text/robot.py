@@ -50,6 +50,8 @@ class Robot:
     """In the order in which they are shown."""
     words: str = ""
     """Where it hears words, as std_msgs/String."""
+    keys: str = ""
+    """Where a person's keys drive it."""
     moving: frozenset[str] = frozenset()
     """Topics that move it, whatever their type."""
     sole: tuple[SoleTopic, ...] = ()

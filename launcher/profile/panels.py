@@ -16,7 +16,8 @@ PANELS = robot().panels
 if TYPE_CHECKING:
     Panel = str
 else:
-    Panel = Literal[tuple(PANELS)]
+    # No robot, no panels; and a Literal cannot be empty.
+    Panel = Literal[tuple(PANELS)] if PANELS else str
 
 
 def panels_for(topics: AbstractSet[str]) -> tuple[str, ...]:

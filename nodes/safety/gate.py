@@ -29,9 +29,8 @@ from nodes.safety.state import GateSnapshot
 from robot.limits import SPEED, STEERING
 from robot.safety.distance import Shares, Verdict, allowed, gate
 from robot.safety.sources import SourceCommand, Sources
-from robot.topics import DRIVE_SAFE
+from robot.topics import DRIVE_SAFE, DRIVE_TELEOP
 from robot.words import STOP, DriveSetpoint
-from safety.topics import DRIVE_TELEOP
 
 _FINEST_M_S = 0.01
 """A smaller reduction of speed waits for the next tick."""

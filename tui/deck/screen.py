@@ -137,7 +137,8 @@ class LessonDeck(DeckScreen):
             yield self._grid
             with Vertical(id="talk"):
                 yield LogPane(LogView(max_lines=LOG_LINES, file_of=self.feed.log_file))
-                yield CommandLine(id="command")
+                if robot().words:
+                    yield CommandLine(id="command")
 
     # Actions
 
@@ -222,9 +223,9 @@ class LessonDeck(DeckScreen):
 
     async def ros2_command(self) -> str:
         """Return what sends the command that is being typed, plays the recording, starts a node."""
-        line = self.query_one(CommandLine).field
-        if line.has_focus:
-            return ros2_words.pub(robot().words, COMMANDS_TYPE, {"data": line.value.strip()})
+        for line in self.query(CommandLine):
+            if line.field.has_focus:
+                return ros2_words.pub(robot().words, COMMANDS_TYPE, {"data": line.field.value.strip()})
         if self.feed.replay is not None and self.feed.link is not None:
             return ros2_words.play(self.feed.link.session.profile)
         name = self.chosen_node
@@ -417,7 +418,8 @@ class LessonDeck(DeckScreen):
             self._lay_out(self.size.height)
             self.refresh_bindings()
         row = row_of(message.update, robot().words)
-        self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
+        for line in self.query(CommandLine):
+            line.show_listeners(0 if row is None else row.subscribers)
         self._dock.take(message.update)
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:

@@ -22,9 +22,9 @@ from graph.observer.requests import (
     StopCommanding,
 )
 from launcher.events import ClosedEvent
-from robot.topics import DRIVE
+from robot.topics import DRIVE, DRIVE_TELEOP
 from safety.gate_report import gate_in
-from safety.topics import DRIVE_TELEOP, SAFETY_STATE
+from safety.topics import SAFETY_STATE
 from tests.tui.recorded import (
     NOW_S,
     TOPICS,
@@ -42,7 +42,8 @@ from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.emergency.gate import gate_words
-from tui.teleop.keys import DRIVE_TYPE, FIRST_HOLD_S, Move
+from tui.teleop.actions import Move
+from tui.teleop.keys import DRIVE_TYPE, FIRST_HOLD_S
 from tui.teleop.widget import TeleopPanel
 from tui.terminal.stall_detector import DRAIN_S
 
