@@ -109,8 +109,7 @@ SCREENS = {
         "WallScreen",
         "0",
         N_("Wall"),
-        N_("Big numbers and a big picture, to be read across a room; Esc goes back."),
-        needs="robot",
+        N_("Distances, picture, wheels and words as large as possible, to be read across a room; Esc goes back."),
     ),
 }
 """In the order in which the top line names them."""
@@ -123,6 +122,7 @@ DIALOGS = (
     "tui.lifecycle.dialogs",
     "tui.topics.actions_of_publish",
     "tui.tour.screen",
+    "tui.viewing.dialog",
 )
 """Modules that define actions of their own, imported when first shown."""
 

@@ -52,7 +52,7 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         await self.pilot.pause()
 
     def head(self) -> str:
-        return self.screen.query_one(TopicHead).render().plain
+        return str(self.screen.query_one(TopicHead).content)
 
     def count(self) -> str:
         return str(self.screen.query_one("#topics-count", Static).content)

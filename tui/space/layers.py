@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
-from graph.data import Trouble
+from graph.data import GraphUpdate, TopicRow, Trouble
 from space.reading.fields import NotDrawnError
-from space.reading.kinds import KINDS, LayerKind, NewestReader
+from space.reading.kinds import KINDS, LayerKind, LayerReader, NewestReader
 from space.reading.robot import ModelReader
 from space.reading.scans import read_sonar
 from text.robot import robot
 from text.ros_names import ROBOT_DESCRIPTION
 from text.sentences import reason_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from graph.data import GraphUpdate, TopicRow
-    from space.reading.kinds import LayerReader
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 FLOAT, TEXT = "std_msgs/msg/Float32", "std_msgs/msg/String"
@@ -34,7 +28,6 @@ class SpaceLayer:
     """What one topic shows."""
 
     def __init__(self, topic: str, type_name: str, kind: LayerKind) -> None:
-        """Begin without a message, shown as soon as there is one."""
         self.topic = topic
         self.type_name = type_name
         self.on = True
@@ -45,9 +38,7 @@ class SpaceLayer:
         self.refused = ""
         """Why the newest message cannot be drawn."""
         self.apart = ""
-        """Why what it shows cannot be placed."""
         self.frame = ""
-        """The frame of what came last."""
         self.heard = False
 
     @property

@@ -35,7 +35,7 @@ def rows_of(screen: SpaceScreen) -> str:
 
 def tints(screen: SpaceScreen) -> set[int]:
     view = screen.view
-    picture = screen.stage.picture(view.camera, *view.size, view.aim)
+    picture = screen.stage.picture(view.aim, view.camera, *view.size)
     return {*picture.front.ravel().tolist(), *picture.back.ravel().tolist()}
 
 
