@@ -21,7 +21,7 @@ ifneq ($(shell PYTHON='$(PYTHON)' ROS='$(ROS)' sh scripts/sound.sh && echo yes),
 .PHONY: .venv/.ready
 endif
 
-ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 scripts space tests text tui view
+ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 safety scripts space tests text tui view
 
 .PHONY: help setup run view test test-all lint lock architecture site clean
 .DEFAULT_GOAL := help

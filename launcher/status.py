@@ -137,6 +137,8 @@ class NodeStatus:
     memory_bytes: int | None = None
     """Proportional set size of all the node's processes."""
     needs: tuple[str, ...] = ()
+    roles: tuple[str, ...] = ()
+    """What it is for the robot, see `text.robot.Role`."""
     file: str = ""
     """The learner's own file that it runs, absolute; empty for other nodes."""
     fault: NodeFault | None = None

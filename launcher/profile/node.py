@@ -28,6 +28,7 @@ from launcher.parts import (
     refuse,
     ros_name,
 )
+from text.robot import Role, robot
 from text.sentences import say
 from text.yaml_scalars import in_quotes
 from text.yaml_scalars import written as single
@@ -42,11 +43,6 @@ NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-_DRIVERS = frozenset(
-    f"nodes.{name}"
-    for name in ("ai_brain", "ai_driver", "chassis", "drive_to_point", "electronic_differential", "llm_parser")
-)
-"""The nodes that command the wheels: two sessions with any of them never share a domain."""
 _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTNG_", "AMENT_")
 """Variables read when an interpreter or a library is loaded: after a fork it is too late."""
 
@@ -142,6 +138,12 @@ class Node(Part):
         "Python module to run as a ROS node, named like its key: `nodes.hello`; or a"
         " file of your own, relative to the profile: `./my_sonar.py`.",
     )
+    roles: tuple[Role, ...] = key(
+        (),
+        "What it is for the robot: `[drives]` for one that commands the wheels; by default what a node"
+        " of Deck says of itself.",
+        strict=False,
+    )
     exec: Annotated[Command | None, AsText()] = key(
         None,
         "Any command instead: `[ros2, run, package, program]`; `python` and `python3`"
@@ -178,6 +180,11 @@ class Node(Part):
     cwd: Annotated[str | None, PathFromProfile()] = key(None, "Working directory, relative to the profile's file.")
     """Absolute; by default the folder in which the launcher was started."""
 
+    def __post_init__(self) -> None:
+        """Fill in the roles that a module says of itself."""
+        if not self.roles:
+            object.__setattr__(self, "roles", robot().roles.get(self.run or "", ()))
+
     @property
     def command(self) -> str:
         """Its program, for display."""
@@ -199,7 +206,7 @@ class Node(Part):
     @property
     def drives(self) -> bool:
         """Whether it commands the wheels."""
-        return self.run in _DRIVERS
+        return "drives" in self.roles
 
     @property
     def file(self) -> str:

@@ -116,6 +116,7 @@ class SupervisedNode:
             cpu_percent=cpu_percent,
             memory_bytes=memory_bytes,
             needs=self.plan.needs,
+            roles=self.plan.roles,
             file=self.plan.file,
             fault=fault or (crash.fault if crash is not None else None),
         )

@@ -39,8 +39,8 @@ from launcher.supervisor.process import ProcessLauncher, helping, orphans
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, encode, pack
-from robot.safety.stop_file import BY_SCREEN, StopFile
-from robot.safety.stop_record import Stop
+from safety.stop_file import BY_SCREEN, StopFile
+from safety.stop_record import Stop
 from text.os_words import os_reason
 from text.packing import pack_text
 from text.run_path import OWN_RUN_DIR

@@ -10,7 +10,8 @@ from textual.app import ComposeResult
 
 from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
-from robot.topics import GOAL_POSE, MAP, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
+from robot.topics import GOAL_POSE, MAP, MOCK_POSE, ODOMETRY, SONAR_FRONT, SONAR_REAR
+from safety.topics import SAFETY_STATE
 from text.figures import figure
 from text.i18n import N_, _, decimal
 from text.plain import plain

@@ -12,8 +12,9 @@ from textual.app import ComposeResult
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
 from graph.data import GraphUpdate
-from robot.safety.gate_report import Gate, gate_in
-from robot.topics import SAFETY_STATE, SONAR_FRONT, SONAR_REAR
+from robot.topics import SONAR_FRONT, SONAR_REAR
+from safety.gate_report import Gate, gate_in
+from safety.topics import SAFETY_STATE
 from text.figures import figure, whole
 from text.i18n import N_, _, decimal
 from tui.panels.panel import ALWAYS, Panel, is_published, newest, other_type, row_of, trouble_of

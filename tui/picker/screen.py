@@ -242,13 +242,12 @@ class PickerScreen(Screen[None], Acting, Working):
     async def start_own(self) -> None:
         """Make the learner's folder of the chosen lesson, and start it."""
         # Not needed for the first frame.
-        from course.folder.folder import own_profile
-        from course.lessons.lesson import LessonFolder
+        from tui.lesson.tasks import own_of
 
         if self.chosen_task is None:
             return
         try:
-            profile = await asyncio.to_thread(own_profile, LessonFolder(self.chosen_task.folder))
+            profile = await asyncio.to_thread(own_of, self.chosen_task)
         except (LauncherError, OSError) as error:
             self.notify(plain(localized(reason_of(error))), severity="error", markup=False)
             return

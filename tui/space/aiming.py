@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from robot.topics import GOAL_POSE, INITIAL_POSE
 from space.drawing.paints import Tint
 from space.drawing.shapes import Shape, Strokes, arrow, places
 from space.transform import Transform, quaternion_from_rpy
 from text.i18n import _, decimal
 from text.plain import plain
+from text.ros_names import GOAL_POSE, INITIAL_POSE
 
 if TYPE_CHECKING:
     from graph.data import Value

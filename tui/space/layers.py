@@ -7,11 +7,12 @@ from dataclasses import replace
 from functools import partial
 
 from graph.data import GraphUpdate, TopicRow, Trouble
-from robot.topics import ROBOT_DESCRIPTION, SONAR_FRAMES
 from space.reading.fields import NotDrawnError
 from space.reading.kinds import KINDS, LayerKind, LayerReader, NewestReader
 from space.reading.robot import ModelReader
 from space.reading.scans import read_sonar
+from text.robot import robot
+from text.ros_names import ROBOT_DESCRIPTION
 from text.sentences import reason_of
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
@@ -125,6 +126,6 @@ def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | N
             return name, KINDS[name]
         if name == TEXT and topic == ROBOT_DESCRIPTION:
             return name, LayerKind(ModelReader)
-        if name == FLOAT and topic in SONAR_FRAMES:
-            return name, LayerKind(partial(NewestReader, partial(read_sonar, frame_id=SONAR_FRAMES[topic])))
+        if name == FLOAT and topic in robot().frames:
+            return name, LayerKind(partial(NewestReader, partial(read_sonar, frame_id=robot().frames[topic])))
     return None

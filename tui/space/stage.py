@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from graph.data import FrameRow, GraphUpdate
-from robot.topics import SONAR_FRAMES
-from robot.world.world import Body
 from space.buffer import NoTransformError, TransformBuffer
 from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera, extent_of, picture
 from space.drawing.shapes import Shape, Speckles, places
 from space.placing import Placer, frame_shapes
 from space.transform import Transform, Vector
+from text.robot import robot
 from text.sentences import say
 from tui.space.layers import SpaceLayers
 
 if TYPE_CHECKING:
     from tui.space.aiming import Aim
 
-BODY = Body()
 BASE = "base_link"
 AROUND = 0.05
 """Share of the picture that is left free around everything when it is fitted."""
@@ -29,12 +26,11 @@ LEAST_M = 2.0
 """Less than this is never made to fill the picture."""
 
 
-_FRONT, _REAR = SONAR_FRAMES.values()
 MOUNTS = {
-    _FRONT: (BASE, Transform((BODY.length_m - BODY.behind_m, 0.0, 0.0))),
-    _REAR: (BASE, Transform.from_rpy((-BODY.behind_m, 0.0, 0.0), (0.0, 0.0, math.pi))),
+    frame: (BASE, Transform.from_rpy((ahead_m, 0.0, 0.0), (0.0, 0.0, heading_rad)))
+    for frame, (ahead_m, heading_rad) in robot().mounts.items()
 }
-"""Where the sonars of the course are, for robots that do not publish it."""
+"""Where the robot's sonars are, as long as it does not publish that."""
 
 
 class Stage:

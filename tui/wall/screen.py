@@ -10,7 +10,7 @@ from textual.widgets import Static
 
 from graph.data import GraphUpdate
 from launcher.profile.panels import panels_for
-from robot.topics import SAFETY_STATE
+from safety.topics import SAFETY_STATE
 from text.i18n import N_, _
 from text.plain import plain
 from tui.actions import bindings

@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from graph.data import Sample
 from graph.observer.requests import Publish, StartPublishing, StopPublishing, StopPublishingAll
-from robot.topics import EMERGENCY_STOP
+from safety.topics import EMERGENCY_STOP
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import opened
 from tests.waiting import until

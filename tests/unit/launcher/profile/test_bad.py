@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 import yaml
@@ -19,6 +19,7 @@ from launcher.profile.model import Profile
 from launcher.profile.node import Node, Ready
 from launcher.profile.panels import PANELS
 from tests.unit.profile_files import refused, told, written
+from text.robot import Role
 
 BAD = [
     ("nodes: {a: {run: ./mien.py}}", "1:18: nodes.a.run: there is no file "),
@@ -42,6 +43,8 @@ BAD = [
     ("nodes: {a: sleep}", "1:12: nodes.a: expected keys and values, found the text 'sleep'"),
     ("nodes: {a: {exec: [x], restart: allways}}",
      "1:33: nodes.a.restart: expected one of never, on-failure, always, found the text 'allways' (did you mean always?)"),
+    ("nodes: {a: {exec: [x], roles: [drive]}}",
+     f"1:32: nodes.a.roles[0]: expected one of {', '.join(get_args(Role))}, found the text 'drive' (did you mean drives?)"),
     ("panels: [sonr]\nnodes: {a: {exec: [x]}}",
      f"1:10: panels[0]: expected one of {', '.join(PANELS)}, found the text 'sonr' (did you mean sonar?)"),
     ("nodes: {a: {exec: [x], ready: {node: a, within: 0}}}",

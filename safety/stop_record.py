@@ -2,7 +2,7 @@
 
 Each stop is known by who said it when: the time at which its message was published, by the clock of
 its publisher, and the message's number there. A release covers the stops that its hearer knew of
-before it was said (`robot.safety.known_stops`), and no other. So two records can be merged in any
+before it was said (`safety.known_stops`), and no other. So two records can be merged in any
 order, as often as they arrive: nodes that hear of each other end with the same one, a stop that
 anybody has heard is a stop of all, a late copy of a stop that was released changes nothing, and a
 release never undoes a stop that came after it, however late it is heard (an observed-remove set:

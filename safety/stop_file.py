@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 from platformdirs import user_state_path
 
-from robot.safety.known_stops import KnownStops
-from robot.safety.stop_record import Stop, StopRecord, read_record
+from safety.known_stops import KnownStops
+from safety.stop_record import Stop, StopRecord, read_record
 from text.i18n import N_
 from text.nested import read_json
 from text.os_words import os_reason

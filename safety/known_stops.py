@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from robot.safety.stop_record import Stop, StopRecord
+from safety.stop_record import Stop, StopRecord
 
 LATE_NS = 3_000_000_000
 """What is older than this came late, or its clock is another one."""
