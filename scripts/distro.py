@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 EXTRAS = {"jazzy": "ros", "kilted": "ros-kilted"}
 """The extra of pyproject.toml that has each; locked/ has files for each, too."""
 FIRST = "jazzy"
-GONE = "python-cmake-module"
-"""A package to build message types with that is not there after Jazzy."""
+RENAMED = {"python-cmake-module": "ament-cmake-ros-core"}
+"""A package to build message types with that is not there after Jazzy, and one that is needed since."""
 MARK = ".ros"
 """In an environment, which one it has; scripts/sound.sh reads it, too."""
 
@@ -36,8 +36,9 @@ def wanted_distro(environment: Path | None = None) -> str:
 
 
 def for_distro(text: str, distro: str) -> str:
-    """Return requirements on packages of Jazzy as those of another ROS, of any version; each has a line."""
+    """Return requirements on packages of Jazzy as those of another ROS, of any version."""
     if distro == FIRST:
         return text
-    text = re.sub(rf".*ros-jazzy-{GONE}.*\n?", "", text)
-    return re.sub(r"ros-jazzy-([a-z-]+)[^\"'\n]*", rf"ros-{distro}-\1", text)
+    return re.sub(
+        r"ros-jazzy-([a-z-]+)[^\"'\n]*", lambda found: f"ros-{distro}-{RENAMED.get(found[1], found[1])}", text
+    )

@@ -223,12 +223,13 @@ class Environment:
             Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
             self.distro.write_text(distro)
         # A half-finished installation looks complete to the next pip. When pip fails it undoes its
-        # work; when it is killed, this mark stays behind.
+        # work; when it is killed, or had nothing whole to go back to, this mark stays behind.
         self.unfinished.touch()
         try:
             self.install()
         except StepError:
-            self.unfinished.unlink()
+            if sound:
+                self.unfinished.unlink()
             raise
         self.unfinished.unlink()
         self.ready.write_bytes(self.identity())

@@ -15,8 +15,8 @@ from ros2 import naming
 from ros2.joining import NETWORK_S, SPIN_S, joined
 from ros2.messages import filled, load, read, to_yaml, wanted
 from ros2.verb import OF_GRAPH, QOS, TYPES, arg, chosen_qos, flag, hidden, positive_float, positive_int, verb
+from safety.topics import EMERGENCY_STOP
 from text.plain import plain
-from text.ros_names import EMERGENCY_STOP
 
 if TYPE_CHECKING:
     import argparse

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from textual.app import ComposeResult
+
+from graph.data import GraphUpdate
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.topics import HEAD_STATE, LLM_RESULT
 from text.figures import whole
@@ -16,11 +19,6 @@ from text.plain import plain
 from tui.panels.panel import Joints, Panel, has_joints, joint_number, trouble_of
 from tui.widgets.canvas import Canvas, Point, rectangle
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
 
 LIMIT_DEG = 90.0
 SAME_WITHIN_DEG = 0.5
@@ -80,16 +78,14 @@ DRAWN_FROM = (22, 6)
 class HeadView(Drawing):
     """Shows a `HeadReading`, the last commanded pose, and the service's answer."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start without a reading."""
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._pose: HeadReading | None = None
         self._told: HeadReading | None = None
         self._answer = ""
         self._moving = False
 
     def show(self, pose: HeadReading) -> None:
-        """Show this pose; the head counts as moving while it differs from the previous one."""
         before = self._pose if self._pose is not None and self._pose.is_known else None
         moving = before is not None and pose.is_known and not before.near(pose)
         if (pose, moving) != (self._pose, self._moving):
@@ -102,7 +98,6 @@ class HeadView(Drawing):
         self.redraw()
 
     def answer(self, words: str) -> None:
-        """Show the service's answer in words."""
         self._answer = plain(words, 200)
         self.redraw()
 
@@ -123,11 +118,10 @@ class HeadView(Drawing):
         ]
         words = self._in_words(numbers, state, width)
         if width < DRAWN_FROM[0] or height < DRAWN_FROM[1]:
-            return [beside(numbers, state, width)] if height == 1 else words
+            return words
         return [*_field(pose, self._told, width, max(0, height - len(words))), *words]
 
     def _in_words(self, numbers: Line, state: Line, width: int) -> list[Line]:
-        """Where it looks and whether it is moving; then the command, and the answer to it."""
         told = self._told_lines(width)
         if cells_of(numbers) + cells_of(state) < width:
             return [beside(numbers, state, width), *told]
@@ -199,11 +193,9 @@ class HeadPanel(Panel):
         return {HEAD_STATE}
 
     def followed(self) -> set[str]:
-        """The topics with the outcome of LLM commands."""
         return {LLM_RESULT}
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest pose and the newest command."""
         drawing = self.query_one(HeadView)
         for sample in update.samples.get(HEAD_STATE, ()):
             pose = head_in(sample.value)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from graph.data import Trouble
+from graph.data import EndpointInfo, TopicRow, Trouble
 from text.figures import elapsed
 from text.i18n import N_, _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from graph.data import EndpointInfo, TopicRow
+    from graph.qos import Mismatch
 
 LONGEST = 400
 SHOWN_NODES = 4
@@ -60,7 +59,8 @@ def advice(row: TopicRow) -> tuple[str, str]:
     if row.trouble is Trouble.QUIET and row.raw_from_afar:
         return lost_words()
     if row.trouble is Trouble.QUIET and not row.publishers:
-        return _("only Deck itself publishes here"), _what_deck_sent(row)
+        sent = _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
+        return _("only Deck itself publishes here"), sent
     return trouble_words(row.trouble, row.age_s), plain(_way_out(row, row.trouble), LONGEST)
 
 
@@ -74,8 +74,9 @@ def _way_out(row: TopicRow, trouble: Trouble) -> str:
     return localized(row.detail)
 
 
-def _what_deck_sent(row: TopicRow) -> str:
-    return _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
+def pair_words(pair: Mismatch) -> str:
+    """Who does not hear whom, and the two fixes."""
+    return plain(f"{localized(pair.what)} {localized(pair.mend)}", LONGEST)
 
 
 def listeners(row: TopicRow | None) -> list[str]:

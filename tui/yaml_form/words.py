@@ -20,7 +20,6 @@ Wrong: TypeAlias = YamlError | FieldError | UnknownTypeError
 
 
 def place_of(error: Wrong) -> TextPlace | None:
-    """Return where it is wrong, None if the type does not exist."""
     line = getattr(error, "line", None)
     return None if line is None else TextPlace(line, getattr(error, "column", None) or 1)
 
@@ -35,7 +34,6 @@ def wrong_words(error: Wrong) -> str:
 
 
 def reason_words(error: Exception) -> str:
-    """Return why something was not sent, for any exception."""
     if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
         return wrong_words(error)
     if isinstance(error, asyncio.TimeoutError):

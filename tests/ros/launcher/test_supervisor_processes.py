@@ -106,30 +106,6 @@ async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(st
     assert "Traceback" not in text
 
 
-async def test_a_killed_node_returns(start: Launch) -> None:
-    client = await start({"node": {"exec": SLEEPER, "restart": "on-failure"}})
-    first = await running_pid(client, "node")
-    kill(first, signal.SIGKILL)
-    status = await until_state(client, "node", NodeState.BACKOFF)
-    assert (status.signal, status.pid) == ("SIGKILL", None)
-    second = await running_pid(client, "node")
-    assert second != first
-    assert client.nodes["node"].restarts == 1
-
-
-async def test_restarts_at_the_same_time_start_one_process(start: Launch, tmp_path: Path) -> None:
-    starts = tmp_path / "starts"
-    text = f"open({str(starts)!r}, 'a').write('x'); import time; time.sleep(1000)"
-    client = await start({"node": {"exec": script(text)}})
-    first = await running_pid(client, "node")
-    await until(starts.exists, "the first start")
-    await asyncio.gather(client.restart("node"), client.restart("node"), client.restart("node"))
-    await until(lambda: client.nodes["node"].pid not in (first, None), "another process")
-    await until(lambda: len(starts.read_text()) == 2, "the second start")
-    await client.stop("node")
-    assert starts.read_text() == "xx"
-
-
 WAYS = {"group": "", "session": "session", "daemon": "session twice"}
 """Where a grandchild may be: in the node's group, in a session of its own, or daemonised."""
 

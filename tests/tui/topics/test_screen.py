@@ -19,7 +19,7 @@ from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, jpeg_message, ope
 from tests.waiting import until
 from text.sentences import say
 from tui.frame.key_bar import KeyBar
-from tui.session.past import SONARS
+from tui.session.past import TRENDS
 from tui.widgets import image_view as newest_picture
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
@@ -43,7 +43,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The one that is chosen first is asked for at first.
-    await until(lambda: stage.graph.wanted.watched - set(SONARS), "the first topic asked for")
+    await until(lambda: stage.graph.wanted.watched - set(TRENDS), "the first topic asked for")
     asked: list[set[str]] = []
     monkeypatch.setattr(stage.graph, "want", lambda interest: asked.append(set(interest.watched)))
     # However long the keys take here, they come before the walk is over.
@@ -53,7 +53,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     monkeypatch.setattr("tui.topics.screen.SETTLED_S", 0.01)
     await stage.pilot.press("down")
     await until(lambda: asked, "the last topic asked for")
-    assert [topics - set(SONARS) for topics in asked] == [{"/drive"}]
+    assert [topics - set(TRENDS) for topics in asked] == [{"/drive"}]
 
 
 @pytest.mark.parametrize(

@@ -240,6 +240,21 @@ def test_an_environment_that_is_not_whole_is_begun_anew(
     assert is_sound(made)
 
 
+def test_a_first_set_up_that_has_failed_can_be_tried_again(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failed(_self: object) -> None:
+        raise environment.StepError("Libraries", made.tree / "log")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(environment.Environment, "install", failed)
+        with pytest.raises(environment.StepError):
+            made.subject.update()
+    assert not is_sound(made)
+    made.subject.update()
+    assert is_sound(made)
+
+
 def test_a_ros_that_is_none_is_refused(
     made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

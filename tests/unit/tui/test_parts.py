@@ -17,7 +17,8 @@ from tui.actions.layouts import on_all_layouts
 from tui.log_view.rows import short_name
 from tui.recording.recording import RecordingLimit, read_limit
 from tui.session.outside import ROSOUT, RosoutReader
-from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, RATE_HZ, Move, Teleop, TeleopLimits, command
+from tui.teleop.actions import Move
+from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, RATE_HZ, Teleop, TeleopLimits, command
 from tui.terminal.bandwidth import OVER_SSH, SAVED_S, Bandwidth, default_limit
 
 
