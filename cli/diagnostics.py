@@ -87,11 +87,5 @@ def _show(rows: tuple[TreeRow, ...], left_out: int) -> None:
 
 def _for_programs(path: tuple[str, ...], record: StatusRecord) -> dict[str, object]:
     status = record.status
-    return {
-        "name": status.name,
-        "path": list(path),
-        "level": record.level.name,
-        "message": status.message,
-        "hardware_id": status.hardware,
-        "values": dict(status.values),
-    }
+    rest = {"level": record.level.name, "hardware_id": status.hardware, "values": dict(status.values)}
+    return {"name": status.name, "path": list(path), "message": status.message, **rest}

@@ -15,6 +15,7 @@ from cli.commands import Parser, command
 from cli.domains import beyond_this_machine
 from cli.observing import DomainView, domain_view
 from cli.options import add_graph, add_json, seconds
+from cli.report import fields_of
 from text.i18n import _, localized
 from text.output import DIM, RED, Paint, json_text, table, write
 from tui.frame_tree import cells
@@ -86,26 +87,15 @@ def _for_programs(row: FrameRow) -> dict[str, Any]:
         "frame": newest.child,
         "parent": newest.parent,
         "static": row.is_static,
-        "count": row.count,
         "refused": row.faults,
-        "hz": row.hz,
-        "age_s": row.age_s,
-        "delay_s": row.delay_s,
-        "publishers": list(row.publishers),
-        "certain": row.certain,
-        "gone": row.gone,
-        "translation": list(newest.transform.translation),
-        "rotation": list(newest.transform.rotation),
+        **fields_of(row, "count", "hz", "age_s", "delay_s", "publishers", "certain", "gone"),
+        **fields_of(newest.transform, "translation", "rotation"),
     }
 
 
 def _finding_for_programs(one: FrameFinding) -> dict[str, Any]:
-    return {
-        "key": one.trouble.value,
-        "frames": list(one.frames),
-        "text": localized(one.text),
-        "mend": localized(one.advice),
-    }
+    told = {"text": localized(one.text), "mend": localized(one.advice)}
+    return {"key": one.trouble.value, "frames": list(one.frames), **told}
 
 
 def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> None:

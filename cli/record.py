@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 from cli.commands import Parser, command
 from cli.domains import beyond_this_machine, running_domain
 from cli.options import add_graph, add_json, folder, seconds
+from cli.report import fields_of
 from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError
@@ -153,13 +154,8 @@ def _table(status: RecordingStatus) -> None:
 
 
 def _figures(status: RecordingStatus) -> dict[str, object]:
-    return {
-        "seconds": round(status.seconds, 3),
-        "messages": status.messages,
-        "bytes": status.bytes,
-        "bytes_per_s": round(status.bytes_per_s),
-        "lost": status.lost,
-    }
+    rounded = {"seconds": round(status.seconds, 3), "bytes_per_s": round(status.bytes_per_s)}
+    return {**rounded, **fields_of(status, "messages", "bytes", "lost")}
 
 
 def _object(event: str, **fields: object) -> None:
