@@ -202,19 +202,13 @@ async def _attached(name: str | None, node: str | None) -> client.SupervisorClie
             await link.aclose()
             raise UnknownNodeError(node, known)
         return link
-    having: list[client.SupervisorClient] = []
-    known_nodes: list[str] = []
-    for session in sessions:
-        link = await client.attach(session.run_id)
-        known_nodes += link.nodes
-        if node in link.nodes:
-            having.append(link)
-        else:
+    links = [await client.attach(session.run_id) for session in sessions]
+    having = [link for link in links if node in link.nodes]
+    for link in links:
+        if having != [link]:
             await link.aclose()
     if len(having) == 1:
         return having[0]
-    for link in having:
-        await link.aclose()
     if not having:
-        raise UnknownNodeError(node, known_nodes)
+        raise UnknownNodeError(node, [name for link in links for name in link.nodes])
     return await client.attach(None)

@@ -194,15 +194,6 @@ class _GradeReport:
         if self._count == 1 and self._aloud:
             say_error(f"{step.title}: {_(_STATES[step.result.state.value])}")
 
-    def _say_step(self, step: StepGrade) -> None:
-        state = step.result.state
-        words = f"{_(_STATES[state.value]):{_WIDTH}}"
-        points = f"{step.result.earned}/{step.result.points}"
-        rest = f"{points:>6}  {step.title}"
-        self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
-        for more in filter(None, (step.message, step.look)):
-            self._write(f"{'':{_WIDTH + 8}}{more}")
-
     def grade(self, grade: Grade) -> None:
         self._done += 1
         if self._count > 1:
@@ -229,7 +220,13 @@ class _GradeReport:
 
     def _end_of_one(self, grade: Grade) -> None:
         for step in grade.steps:
-            self._say_step(step)
+            state = step.result.state
+            words = f"{_(_STATES[state.value]):{_WIDTH}}"
+            points = f"{step.result.earned}/{step.result.points}"
+            rest = f"{points:>6}  {step.title}"
+            self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
+            for more in filter(None, (step.message, step.look)):
+                self._write(f"{'':{_WIDTH + 8}}{more}")
         for words in grade.remarks:
             self._write(words)
         self._write(
