@@ -37,11 +37,6 @@ STEADY_S = 0.5
 """How long all must stay up: a node that fails does so right after its start."""
 
 
-def _up_options(parser: Parser) -> None:
-    add_profile(parser)
-    add_profile_options(parser)
-
-
 def _logs_options(parser: Parser) -> None:
     parser.add_argument("node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default"))
     parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
@@ -51,7 +46,7 @@ def _logs_options(parser: Parser) -> None:
     parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
 
 
-@command("up", _up_options)
+@command("up", add_profile, add_profile_options)
 async def up_command(options: Namespace) -> int:
     """Start a profile in the background, wait until it is up, and show its nodes."""
     profile = profile_to_run(options)

@@ -103,7 +103,7 @@ def grade_command(options: Namespace) -> int:
     grades = run(_graded(grade_all(terms, chosen, jobs=options.jobs, domains=domains, on_step=report.step), report))
     report.end(grades)
     if writer is not None or output is not None:
-        _put(writer(grades) if writer else "\n".join(report.lines), output)
+        _put(writer(grades) if writer else "\n".join(report.lines) + "\n", output)
     return exit_code(grades, options.format)
 
 
@@ -155,12 +155,11 @@ def _writable(name: str) -> Path:
 
 
 def _put(text: str, output: Path | None) -> None:
-    text = text if text.endswith("\n") else f"{text}\n"
     if output is not None:
         # Lines end as the format has it.
         output.write_bytes(text.encode())
         return
-    sys.stdout.write(text)
+    sys.stdout.write(text if text.endswith("\n") else f"{text}\n")
     sys.stdout.flush()
 
 
@@ -229,15 +228,12 @@ class _GradeReport:
                 self._write(f"{'':{_WIDTH + 8}}{more}")
         for words in grade.remarks:
             self._write(words)
-        self._write(
-            _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})").format(
-                state=_(_STATES[grade.state.value]),
-                points=grade.points,
-                most=grade.max_points,
-                s=grade.seconds,
-                seed=grade.seed,
-            )
+        words, state = (
+            _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})"),
+            _(_STATES[grade.state.value]),
         )
+        points = {"points": grade.points, "most": grade.max_points}
+        self._write(words.format(state=state, **points, s=grade.seconds, seed=grade.seed))
         if grade.bag is not None:
             self._write(_("recorded in {folder}").format(folder=plain(str(grade.bag))))
 

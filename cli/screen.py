@@ -18,7 +18,7 @@ from text.sentences import say
 from text.suggestions import nearest
 
 
-@command(OPEN, lambda _parser: None)
+@command(OPEN)
 def open_command(options: Namespace) -> int:
     """Show the screen; without a terminal, behave like `deck run`."""
     if options.version:
@@ -59,12 +59,7 @@ def profile_or_command(name: str) -> Path:
         raise UsageError(words) from error
 
 
-def _attach_options(parser: Parser) -> None:
-    add_running(parser)
-    add_screen(parser)
-
-
-@command("attach", _attach_options)
+@command("attach", add_running, add_screen)
 def attach_command(options: Namespace) -> int:
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
