@@ -228,12 +228,9 @@ class _GradeReport:
                 self._write(f"{'':{_WIDTH + 8}}{more}")
         for words in grade.remarks:
             self._write(words)
-        words, state = (
-            _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})"),
-            _(_STATES[grade.state.value]),
-        )
-        points = {"points": grade.points, "most": grade.max_points}
-        self._write(words.format(state=state, **points, s=grade.seconds, seed=grade.seed))
+        words = _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})")
+        figures = {"points": grade.points, "most": grade.max_points, "s": grade.seconds, "seed": grade.seed}
+        self._write(words.format(state=_(_STATES[grade.state.value]), **figures))
         if grade.bag is not None:
             self._write(_("recorded in {folder}").format(folder=plain(str(grade.bag))))
 
