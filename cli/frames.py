@@ -37,15 +37,13 @@ def _frames_options(parser: Parser) -> None:
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, help=_("listen for S seconds; 3 by default")
     )
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
-    add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if nothing is wrong with the frames, 1 if something is or there are none, 2 "
         "if ROS or the command line cannot be used."
     )
 
 
-@command("frames", _frames_options)
+@command("frames", _frames_options, add_graph, add_json)
 def frames_command(options: Namespace) -> int:
     from graph.frames.findings import findings_in
     from graph.frames.tree import FrameTree

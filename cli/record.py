@@ -57,15 +57,13 @@ def _record_options(parser: Parser) -> None:
         ),
     )
     parser.add_argument("--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds"))
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
-    add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if the recording is complete, 1 if it broke off or no messages "
         "arrived, 2 if it could not start."
     )
 
 
-@command("record", _record_options)
+@command("record", _record_options, add_graph, add_json)
 def record_command(options: Namespace) -> int:
     """Record until stopped; return 0 if the bag is complete and not empty."""
     from graph.recording.recorder import Recorder

@@ -77,11 +77,10 @@ def attach_command(options: Namespace) -> int:
 
 def _watch_options(parser: Parser) -> None:
     add_graph(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
-    add_screen(parser)
     parser.epilog = _("Deck starts and stops nothing here.")
 
 
-@command("watch", _watch_options)
+@command("watch", _watch_options, add_screen)
 def watch_command(options: Namespace) -> int:
     domain = choose_domain(options.domain, None, os.environ)
     if not has_terminal():
