@@ -14,18 +14,14 @@ from agents.tools import Call, Facts, Message, Request, RosName, Said, full_name
 from graph.messages.yaml_text import to_yaml
 from graph.observer.requests import CallService, Publish
 from launcher.errors import LauncherError
-from robot.safety.moving_topics import moves
 from robot.topics import (
     BRAIN_STATE,
     COMMAND_SOURCES,
     DRIVE_SAFE,
-    EMERGENCY_STATE,
-    EMERGENCY_STOP,
     HEAD_SERVICE,
     MOCK_MOTORS,
     MOCK_POSE,
     ODOMETRY,
-    SAFETY_STATE,
     SONAR_FRONT,
     SONAR_REAR,
     SPEAKER,
@@ -35,6 +31,8 @@ from robot.topics import (
     VLM_DETECTIONS,
 )
 from robot.words import parse_word
+from safety.moving_topics import moves
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.plain import plain, plain_lines
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from launcher.errors import LauncherError
 from launcher.status import Severity
-from robot.safety.gate_report import STOPPED, gate_in
-from robot.safety.stop_file import NOT_PASSED, PASSED_EVERY_S, TOPIC, StopFile
-from robot.safety.stop_record import Stop
-from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
+from safety.gate_report import STOPPED, gate_in
+from safety.stop_file import NOT_PASSED, PASSED_EVERY_S, TOPIC, StopFile
+from safety.stop_record import Stop
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.plain import plain
 from text.sentences import say
 

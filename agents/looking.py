@@ -17,14 +17,15 @@ from agents.tools import Call, Camera, Count, Facts, Part, RosName, Seconds, Wid
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.messages.yaml_text import to_yaml
 from graph.pictures.reading import read_picture
-from robot.safety.gate_report import gate_in
-from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
+from robot.topics import BATTERY, CAMERA, HEAD_STATE, MOCK_POSE, ODOMETRY, SONAR_FRONT, SONAR_REAR
+from safety.gate_report import gate_in
+from safety.topics import SAFETY_STATE
 from text.plain import plain, plain_lines
 
 if TYPE_CHECKING:
     from agents.session import RobotSession
     from graph.data import Sample, TopicRow
-    from robot.safety.gate_report import Gate
+    from safety.gate_report import Gate
 
 FRESH_S = 2.5
 """An older state is not one."""

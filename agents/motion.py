@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from agents.refusal import refused
 from robot.commands.schema import CommandError, DriveCommand, HeadCommand, parse_llm
-from robot.safety.gate_report import STOPPED
+from safety.gate_report import STOPPED
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from launcher.consent import AgentRules
     from robot.commands.schema import LlmResponse
-    from robot.safety.gate_report import Gate
+    from safety.gate_report import Gate
     from text.sentences import Words
 
 MAX_HEADS = 8

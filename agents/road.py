@@ -19,7 +19,7 @@ from robot.topics import DRIVE, DRIVE_SAFE, LLM_RAW_JSON
 if TYPE_CHECKING:
     from agents.session import RobotSession
     from graph.data import EndpointInfo
-    from robot.safety.gate_report import Gate
+    from safety.gate_report import Gate
 
 ANSWER_WITHIN_S = 3.0
 KNOWN_WITHIN_S = 3.0

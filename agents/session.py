@@ -19,7 +19,7 @@ from launcher.consent import AUDIT_FILE
 from launcher.errors import LauncherError, SessionError, SeveralRunningError, UsageError
 from launcher.events import ClosedEvent
 from launcher.private_files import open_file
-from robot.topics import EMERGENCY_STOP
+from safety.topics import EMERGENCY_STOP
 from text.output import json_text
 from text.sentences import reason_of, say
 

@@ -10,18 +10,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from graph.data import Interest
-from robot.topics import (
-    BATTERY,
-    EMERGENCY_STATE,
-    EMERGENCY_STOP,
-    HEAD_STATE,
-    LLM_RESULT,
-    MOCK_POSE,
-    ODOMETRY,
-    SAFETY_STATE,
-    SONAR_FRONT,
-    SONAR_REAR,
-)
+from robot.topics import BATTERY, HEAD_STATE, LLM_RESULT, MOCK_POSE, ODOMETRY, SONAR_FRONT, SONAR_REAR
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

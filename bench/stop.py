@@ -17,6 +17,7 @@ import tempfile
 import threading
 import time
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -130,7 +131,7 @@ def nodes(folder: Path) -> Iterator[None]:
     with ExitStack() as stack:
         for name in CHAIN:
             port = {"port": str(folder / PORTS[name])} if name in PORTS else {}
-            node = specs[name].model_copy(update={"params": {**specs[name].params, **port}})
+            node = replace(specs[name], params={**specs[name].params, **port})
             stack.enter_context(running(*node.argv()[1:], domain=DOMAIN))
         stack.enter_context(running("-m", "bench.stop", "command", domain=DOMAIN))
         yield

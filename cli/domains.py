@@ -11,7 +11,7 @@ from launcher.domain.domain import choose_domain
 from launcher.errors import DomainTakenError, UsageError
 from launcher.profile.catalog import find_profile
 from launcher.runs.shared_domain import apart_from_classmates, refuse_shared_domain
-from robot.safety.stop_file import stop_place
+from safety.stop_file import stop_place
 from text.i18n import _, localized
 from text.output import say_error
 from text.sentences import say

@@ -22,7 +22,7 @@ from tui.frame_tree import cells
 
 if TYPE_CHECKING:
     from graph.data import FrameRow, GraphUpdate
-    from graph.frames.findings import FrameFinding
+    from graph.findings.finding import GraphFinding
     from graph.frames.tree import FrameTree
 
 STEADY_S = 2.0
@@ -91,12 +91,11 @@ def _for_programs(row: FrameRow) -> dict[str, Any]:
     }
 
 
-def _finding_for_programs(one: FrameFinding) -> dict[str, Any]:
-    told = {"text": localized(one.text), "mend": localized(one.advice)}
-    return {"key": one.trouble.value, "frames": list(one.frames), **told}
+def _finding_for_programs(one: GraphFinding) -> dict[str, Any]:
+    return {"key": one.rule, "frames": list(one.nodes), "text": localized(one.what), "mend": localized(one.mend)}
 
 
-def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> None:
+def _show(tree: FrameTree, findings: Sequence[GraphFinding], domain: int) -> None:
     paint = Paint(sys.stdout)
     lines = tree.lines()
     if not lines:
@@ -109,7 +108,7 @@ def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> Non
         for row in table(head, rows):
             write(row)
     for one in findings:
-        write(f"{paint('✗', RED)} {localized(one.text)}")
-        write(f"  {paint('-> ' + localized(one.advice), DIM)}")
+        write(f"{paint('✗', RED)} {localized(one.what)}")
+        write(f"  {paint('-> ' + localized(one.mend), DIM)}")
     if lines and not findings:
         write(_("✓ nothing is wrong with the frames"))

@@ -22,8 +22,8 @@ from graph.bag.listing import ListedBag, bags_in
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
 from launcher.rundir import recordings_path
-from robot.safety.moving_topics import STOPPED_BY_ZEROS, moves
-from robot.topics import EMERGENCY_STOP
+from safety.moving_topics import STOPPED_BY_ZEROS, moves
+from safety.topics import EMERGENCY_STOP
 from text.i18n import _, localized, ngettext
 from text.output import BOLD, YELLOW, Paint, keep_stdout_to_ourselves, say_error, table, write
 from text.plain import plain

@@ -20,7 +20,7 @@ from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph
 from launcher.domain.discovery import settings_of_discovery
-from launcher.domain.domain import ros_environment
+from launcher.domain.domain import settings_of_domain
 from launcher.errors import NotRunningError
 from launcher.ros_tools import own_folders, ros_tools, without_wheels
 from text.i18n import N_, _, localized
@@ -172,8 +172,9 @@ def _place(options: Namespace) -> tuple[str, int, str | tuple[str, ...]]:
 
 def environment_in(domain: int, discovery: str | tuple[str, ...]) -> dict[str, str]:
     """Return the variables for programs of another ROS: of this process, of ROS, and ours."""
-    environ = ros_environment(os.environ, domain, discovery)
+    environ = dict(os.environ)
     changes: dict[str, str | None] = {
+        **settings_of_domain(domain, discovery),
         **without_wheels(environ),
         **settings_of_discovery(environ, discovery),
         **ros_tools(environ),

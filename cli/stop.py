@@ -17,7 +17,7 @@ from launcher.client.running import find_running, running_records
 from launcher.client.stop_road import StopRoad
 from launcher.errors import LauncherError, NotRunningError
 from launcher.runs.record import RunRecord
-from robot.topics import EMERGENCY_STATE
+from safety.topics import EMERGENCY_STATE
 from text.i18n import _, localized
 from text.output import say_error, write
 from text.plain import plain

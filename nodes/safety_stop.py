@@ -36,7 +36,8 @@ from nodes.safety.gate import CommandGate
 from nodes.safety.state import DistanceSensor, DistanceSensors, GateSnapshot, SensorResult, shares
 from nodes.safety.words import EMERGENCY, RELEASED, STARTED, diagnosis, tell_front
 from robot.safety.distance import RangeState, SafetyZone, Verdict, allowed, where
-from robot.topics import COMMAND_SOURCES, SAFETY_STATE, SONAR_FRONT
+from robot.topics import COMMAND_SOURCES, SONAR_FRONT
+from safety.topics import SAFETY_STATE
 
 _STATE_EVERY_S = _PUBLISHERS_EVERY_S = 1.0
 

@@ -15,6 +15,8 @@ TRACK_M = 0.15
 """Distance between the two rear wheels."""
 WHEEL_RADIUS_M = 0.0325
 """Radius of a driven wheel."""
+LENGTH_M, BEHIND_M = 0.35, 0.05
+"""Of the robot, and of what is behind its rear axle."""
 STRAIGHT_BELOW_RAD = 0.01
 """Steering angles smaller than this count as straight ahead."""
 STEERING_LIMIT_RAD = math.pi / 2

@@ -12,22 +12,19 @@ AUDIO_LEVEL = "/audio/level"
 BATTERY = "/battery"
 BRAIN_STATE = "/brain_state"
 CAMERA = "/camera/color/image_raw"
-DIAGNOSTICS = "/diagnostics"
+DIAGNOSTICS = ros_names.DIAGNOSTICS
 DRIVE = "/drive"
 DRIVE_ACTION = "/drive_action"
 DRIVE_SAFE = "/drive_safe"
 DRIVE_TELEOP = "/drive_teleop"
 DRIVE_TO_POINT = "drive_to_point"
 """An action, relative to the namespace of its node."""
-EMERGENCY_STATE = "/emergency_stop_state"
-EMERGENCY_STOP = ros_names.EMERGENCY_STOP
-GOAL_POSE = "/goal_pose"
+GOAL_POSE = ros_names.GOAL_POSE
 HEAD_SERVICE = "set_head_position"
 """Relative to the namespace of its node."""
 HEAD_STATE = "/head_state"
 HEARD = "/audio/heard"
 """Words that were recognised, std_msgs/String."""
-INITIAL_POSE = "/initialpose"
 JOINT_STATES = "/joint_states"
 LLM_RAW_JSON = "/llm_raw_json"
 LLM_RESULT = "/llm_result"
@@ -36,9 +33,7 @@ MICROPHONE = "/audio/mic_raw"
 MOCK_MOTORS = "/mock/motors"
 MOCK_POSE = "/mock/pose"
 ODOMETRY = "/odom"
-ROBOT_DESCRIPTION = "/robot_description"
-"""The robot as URDF, std_msgs/String, latched."""
-SAFETY_STATE = "/safety_state"
+ROBOT_DESCRIPTION = ros_names.ROBOT_DESCRIPTION
 SAY = "/say"
 """Words to be spoken, std_msgs/String; empty: be quiet at once."""
 SONAR_FRONT = "/sensor/sonar_front"
@@ -54,7 +49,3 @@ WHEEL_COMMANDS = "/wheel_commands"
 
 COMMAND_SOURCES = (DRIVE_TELEOP, DRIVE_ACTION, DRIVE)
 """Commands for the gate, by rank: a person's keys, a drive to a point, words and the model."""
-OF_MANY = frozenset({JOINT_STATES})
-"""Topics that several nodes publish together, each for its own joints."""
-MAY_WAIT = frozenset({EMERGENCY_STOP, HEAD_STATE, JOINT_STATES, SAY, SPEAKER})
-"""Topics that need no publisher: people speak there, or drivers that a lesson may do without."""

@@ -19,8 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 LOCALE = ROOT / "text" / "locale"
 DOMAIN = "deck"
 ROOMS = (
-    *("agents", "brain", "cli", "course", "graph", "launcher", "nodes", "robot", "ros2", "space"),
-    *("text", "tui", "view"),
+    *("agents", "brain", "cli", "course", "graph", "launcher", "nodes", "robot", "ros2", "safety"),
+    *("space", "text", "tui", "view"),
 )
 KEYWORDS = (
     *("_", "N_", "ngettext:1,2", "refused", "say"),

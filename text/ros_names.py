@@ -1,4 +1,4 @@
-"""The names of ROS: which characters they may have, and three that several rooms know.
+"""The names of ROS: which characters they may have, and those that any robot has.
 
 Source: design.ros2.org/articles/topic_and_service_names.html.
 """
@@ -14,5 +14,8 @@ TOPIC_NAME = re.compile(rf"/{_PART}(/{_PART})*", re.ASCII)
 """The full name of a topic."""
 TF, TF_STATIC = "/tf", "/tf_static"
 """Where tf2 listens, in whichever namespace a node is."""
-EMERGENCY_STOP = "/emergency_stop"
-"""Where people and screens say that the robot has to stand still."""
+DIAGNOSTICS = "/diagnostics"
+GOAL_POSE, INITIAL_POSE = "/goal_pose", "/initialpose"
+"""Where RViz says them, and navigation hears them."""
+ROBOT_DESCRIPTION = "/robot_description"
+"""The robot as URDF, std_msgs/String, latched."""

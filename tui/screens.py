@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from textual.app import App
@@ -13,6 +14,14 @@ from tui.actions import REGISTRY
 
 if TYPE_CHECKING:
     from textual.screen import Screen
+
+
+def is_there(room: str) -> bool:
+    """Whether a room is installed that a screen may need: other robots are watched without ours, and no course."""
+    try:
+        return find_spec(room) is not None
+    except ImportError:
+        return False
 
 
 class ScreenEntry(NamedTuple):
@@ -26,6 +35,12 @@ class ScreenEntry(NamedTuple):
     """In Textual's notation; none for the list of lessons, where one is without a session."""
     title: str = ""
     about: str = ""
+    needs: str = ""
+    """The room without which there is no such screen."""
+
+    @property
+    def is_there(self) -> bool:
+        return not self.needs or is_there(self.needs)
 
     def load(self) -> type[Screen[Any]]:
         """Return the class: the first frame needs only one of them."""
@@ -44,6 +59,7 @@ SCREENS = {
         "L",
         N_("Lesson"),
         N_("The task of this step, what is judged of your nodes, and hints."),
+        needs="course",
     ),
     "topics": ScreenEntry(
         "topics", "TopicsScreen", "2,f3", N_("Topics"), N_("Every topic with its rates; the selected one live.")
@@ -54,6 +70,7 @@ SCREENS = {
         "3,f4",
         N_("Composer"),
         N_("Write the JSON that an LLM would send, and see the result."),
+        needs="brain",
     ),
     "logs": ScreenEntry(
         "logs", "LogsScreen", "4,f5", N_("Logs"), N_("The messages of all nodes: filter, search, save.")
@@ -67,6 +84,7 @@ SCREENS = {
         "6",
         N_("Flow"),
         N_("One timeline of all nodes: what followed from a word that was said."),
+        needs="robot",
     ),
     "devices": ScreenEntry(
         "devices",
@@ -74,6 +92,7 @@ SCREENS = {
         "7",
         N_("Devices"),
         N_("Every driver, what it is connected to, and what goes over its port."),
+        needs="robot",
     ),
     "frames": ScreenEntry(
         "frame_tree",
@@ -90,7 +109,7 @@ SCREENS = {
         "WallScreen",
         "0",
         N_("Wall"),
-        N_("Big numbers and a big picture, to be read across a room; Esc goes back."),
+        N_("Distances, picture, wheels and words as large as possible, to be read across a room; Esc goes back."),
     ),
 }
 """In the order in which the top line names them."""
@@ -103,6 +122,7 @@ DIALOGS = (
     "tui.lifecycle.dialogs",
     "tui.topics.actions_of_publish",
     "tui.tour.screen",
+    "tui.viewing.dialog",
 )
 """Modules that define actions of their own, imported when first shown."""
 
@@ -146,7 +166,8 @@ class Screens:
 def every_action() -> frozenset[str]:
     """Return the binding id of every action; this has to import every screen."""
     for screen in SCREENS.values():
-        screen.load()
+        if screen.is_there:
+            screen.load()
     for dialog in DIALOGS:
         import_module(dialog)
     return frozenset(REGISTRY)

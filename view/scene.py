@@ -14,10 +14,10 @@ from graph.pictures.compressed import to_jpeg
 from graph.pictures.picture import METRES
 from graph.pictures.pixels import ImageError, pixels_of
 from graph.pictures.reading import read_picture
-from robot.topics import ROBOT_DESCRIPTION, TF, TF_STATIC
 from space.reading.fields import NotDrawnError
 from text.i18n import localized
 from text.plain import plain
+from text.ros_names import ROBOT_DESCRIPTION, TF, TF_STATIC
 from text.sentences import Words, reason_of, say
 from view.shapes import (
     Drawn,

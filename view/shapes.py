@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from graph.pictures.picture import ramp_colours
-from robot.topics import SONAR_FRAMES
 from space.drawing.paints import Tint
 from space.drawing.shapes import Strokes
 from space.reading.clouds import cloud_points
@@ -24,6 +23,7 @@ from space.reading.robot import read_model
 from space.reading.scans import read_range, read_sonar, scan_ends
 from space.robot_model import Cuboid, Cylinder, Mesh, Sphere
 from text.plain import plain
+from text.robot import robot
 from text.sentences import reason_of, say
 
 if TYPE_CHECKING:
@@ -343,8 +343,8 @@ def cone(topic: str, message: Message) -> Iterator[Drawn]:
 
 def ray(topic: str, message: Message) -> Iterator[Drawn]:
     """Yield the `std_msgs/Float32` of a sonar, nothing for any other. Raises NotDrawnError."""
-    if topic in SONAR_FRAMES:
-        yield _cone(topic, read_sonar(message, SONAR_FRAMES[topic]))
+    if topic in robot().frames:
+        yield _cone(topic, read_sonar(message, robot().frames[topic]))
 
 
 def _cone(topic: str, found: Drawable) -> Drawn:

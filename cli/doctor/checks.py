@@ -27,6 +27,7 @@ from brain.faults import ModelError
 from brain.key import key_of
 from brain.settings import load
 from cli.doctor.finding import Finding, either, fail, ok, warn
+from graph.distro import TESTED, wheel_of
 from launcher.domain.discovery import set_discovery, why_open
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError, LauncherError
@@ -35,7 +36,6 @@ from launcher.serial_ports import SerialPort, serial_ports
 from text.i18n import LocalizedFloat, _, localized
 from text.nested import read_json
 from text.plain import plain
-from text.run_path import run_path
 
 ROOT = Path("/")
 _NOT_FROM_HERE = "import sys; sys.path[:] = [place for place in sys.path if place]\n"
@@ -166,8 +166,8 @@ def ros(
         yield fail("ros.rclpy", _("ROS 2: rclpy cannot be imported ({reason})").format(reason=error), get_ros)
         return
     text = f"ROS 2 {_origin(rclpy, environ)} ({rclpy})"
-    fix = _("Deck is tested with jazzy only; others may work")
-    yield either(environ.get("ROS_DISTRO", "jazzy") == "jazzy", "ros.distro", text, fix)
+    fix = _("Deck is tested with jazzy and kilted only; others may work")
+    yield either(environ.get("ROS_DISTRO", TESTED[0]) in TESTED, "ros.distro", text, fix)
     if error:
         fix = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
         text = _("rclpy is installed, but no node can be created: {reason}").format(reason=error)
@@ -189,12 +189,10 @@ def ros(
 def _origin(rclpy: str, environ: Mapping[str, str]) -> str:
     """Say where this ROS 2 comes from."""
     distro, conda = environ.get("ROS_DISTRO", ""), environ.get("CONDA_PREFIX", "")
-    try:
-        wheel = metadata.distribution("ros-jazzy-rclpy")
-        if rclpy.startswith(str(wheel.locate_file(""))):
-            return _("jazzy, wheels from PyPI (rclpy {version})").format(version=wheel.version)
-    except metadata.PackageNotFoundError:
-        pass
+    for name in TESTED:
+        wheel = wheel_of(name)
+        if wheel is not None and rclpy.startswith(str(wheel.locate_file(""))):
+            return _("{distro}, wheels from PyPI (rclpy {version})").format(distro=name, version=wheel.version)
     if rclpy.startswith("/opt/ros/"):
         return _("{distro} from the distribution").format(distro=rclpy.split("/")[3])
     if conda and rclpy.startswith(conda):
@@ -473,7 +471,8 @@ def runs() -> Iterator[Finding]:
     from launcher.runs.strays import find_strays
 
     try:
-        here, logs = found_run_dir() or run_path(os.environ), log_path()
+        found_run_dir()
+        logs = log_path()
         there = next(folder for folder in (logs, *logs.absolute().parents) if folder.exists())
         check_writable(there)
     except LauncherError as error:
@@ -495,7 +494,7 @@ def runs() -> Iterator[Finding]:
     if apart:
         text = _("also running, in a container or with another DECK_RUN_DIR: {names}")
         yield ok("apart", text.format(names=", ".join(apart)))
-    strays = find_strays(here)
+    strays = find_strays()
     if strays:
         text = _("left behind by an earlier run: {names}")
         fix = _("the screen offers to stop them; or: kill {pids}").format(

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import random
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -97,9 +97,9 @@ def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:
 
     def at_home(node: Node) -> Node:
         if node.is_ours:
-            return node.model_copy(update={"cwd": node.cwd or str(lesson.starter)})
+            return replace(node, cwd=node.cwd or str(lesson.starter))
         env = {**places.environment, **node.env}
-        return node.model_copy(update={"cwd": node.cwd or str(places.files), "env": env})
+        return replace(node, cwd=node.cwd or str(places.files), env=env)
 
     nodes = {name: at_home(node) for name, node in profile.nodes.items()}
     return profile.model_copy(update={"discovery": "localhost", "nodes": nodes})

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from launcher.control.socket import connect
 from launcher.wire import VERSION, encode
-from robot.safety.stop_file import BY_SCREEN, StopFile
-from robot.safety.stop_record import Stop
+from safety.stop_file import BY_SCREEN, StopFile
+from safety.stop_record import Stop
 from text.nested import read_json
 
 ANSWERED_WITHIN_S = 0.3

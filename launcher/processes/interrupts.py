@@ -5,26 +5,30 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING, TypeVar
-
-if TYPE_CHECKING:
-    from collections.abc import Coroutine, Iterator
+from collections.abc import Coroutine, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from typing import Any, TypeVar
 
 _T = TypeVar("_T")
 
 
 @contextmanager
-def silent() -> Iterator[None]:
-    """Let an interrupt end the process at once, as a program that is not Python's: no traceback."""
-    if not _python_answers():
+def _answered_by(answer: Any) -> Iterator[None]:  # noqa: ANN401 - as `signal.signal` takes it
+    """Let something else answer interrupts, where Python would: on the main thread, without a handler of its own."""
+    main = threading.current_thread() is threading.main_thread()
+    if not main or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         yield
         return
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, answer)
     try:
         yield
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def silent() -> AbstractContextManager[None]:
+    """Let an interrupt end the process at once, as a program that is not Python's: no traceback."""
+    return _answered_by(signal.SIG_DFL)
 
 
 @contextmanager
@@ -34,15 +38,11 @@ def held() -> Iterator[None]:
     An interrupted import, or an event loop interrupted while it is made, can end with a traceback
     of its own, or lose the interrupt.
     """
-    if not _python_answers():
-        yield
-        return
     interrupts: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, _frame: interrupts.append(number))
     try:
-        yield
+        with _answered_by(lambda number, _frame: interrupts.append(number)):
+            yield
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
         if interrupts:
             raise KeyboardInterrupt
 
@@ -66,10 +66,3 @@ def run(work: Coroutine[object, object, _T]) -> _T:
             return runner.run(work)
     finally:
         work.close()
-
-
-def _python_answers() -> bool:
-    """Whether an interrupt would be raised here: no handler of its own, and the main thread."""
-    if threading.current_thread() is not threading.main_thread():
-        return False
-    return signal.getsignal(signal.SIGINT) is signal.default_int_handler

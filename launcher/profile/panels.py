@@ -1,55 +1,23 @@
 """The panels that a profile may list: part of the file format, and what is to be known of them without the screen.
 
 The panel `sonar` itself is the class `SonarPanel` in `tui.panels.sonar`. The schema of profiles, the list of lessons,
-and which panels stand beside the nodes of others are made from this table.
+and which panels stand beside the nodes of others are made from this table, which the robot announces.
 """
 
 from __future__ import annotations
 
 from collections.abc import Set as AbstractSet
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
-from robot.topics import (
-    BRAIN_STATE,
-    CAMERA,
-    HEAD_STATE,
-    JOINT_STATES,
-    MAP,
-    MICROPHONE,
-    ODOMETRY,
-    SONAR_FRONT,
-    SONAR_REAR,
-    SPEAKER,
-    WHEEL_COMMANDS,
-)
-from text.i18n import N_
+from text.robot import robot
 
-
-class PanelEntry(NamedTuple):
-    """What a panel is called, and its topics."""
-
-    title: str
-    """The name in the list of lessons, to be translated."""
-    needs: tuple[str, ...] = ()
-    """Topics of others: if one of them exists, the panel has something to show."""
-
-
-PANELS: dict[str, PanelEntry] = {
-    "sonar": PanelEntry(N_("sonar"), (SONAR_FRONT, SONAR_REAR)),
-    "wheels": PanelEntry(N_("wheels"), (WHEEL_COMMANDS, JOINT_STATES)),
-    "map": PanelEntry(N_("map"), (ODOMETRY, MAP)),
-    "camera": PanelEntry(N_("camera"), (CAMERA,)),
-    "head": PanelEntry(N_("head"), (HEAD_STATE,)),
-    "voice": PanelEntry(N_("voice"), (MICROPHONE, SPEAKER)),
-    "brain": PanelEntry(N_("brain"), (BRAIN_STATE,)),
-    "composer": PanelEntry(N_("composer")),
-}
-"""In the order in which they are shown."""
+PANELS = robot().panels
 
 if TYPE_CHECKING:
     Panel = str
 else:
-    Panel = Literal[tuple(PANELS)]
+    # No robot, no panels; and a Literal cannot be empty.
+    Panel = Literal[tuple(PANELS)] if PANELS else str
 
 
 def panels_for(topics: AbstractSet[str]) -> tuple[str, ...]:

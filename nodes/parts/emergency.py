@@ -3,7 +3,7 @@
 A stop takes effect first; then it is published on /emergency_stop_state, and then saved to disk. A
 stop that one node has heard is a stop of all: each of them takes what it has not heard itself from
 the state that the others publish, and from the disk, whichever is sooner, and so it does with a
-release. `robot.safety.stop_record` says what follows if these contradict each other.
+release. `safety.stop_record` says what follows if these contradict each other.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from std_msgs.msg import Bool
 
 from nodes.parts.node import DEPTH, LATCHED, LessonNode, PeriodicThread
 from nodes.parts.stop_news import FREE, HELD, OF_MANY, named, read_reports, report_message
-from robot.safety.known_stops import Heard, KnownStops
-from robot.safety.stop_file import TOPIC, KeptStop, StopFile
-from robot.safety.stop_record import Insistence, Stop, StopRecord
-from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
+from safety.known_stops import Heard, KnownStops
+from safety.stop_file import TOPIC, KeptStop, StopFile
+from safety.stop_record import Insistence, Stop, StopRecord
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from text.i18n import N_
 
 _EVERY_S = 0.05

@@ -12,9 +12,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
 from nodes.parts.node import DEPTH, LessonNode
-from robot.safety.stop_file import NOT_PASSED, PASSED_EVERY_S, TOPIC, KeptStop, StopFile
-from robot.safety.stop_record import Stop, StopRecord, read_record
-from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
+from safety.stop_file import NOT_PASSED, PASSED_EVERY_S, TOPIC, KeptStop, StopFile
+from safety.stop_record import Stop, StopRecord, read_record
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from text.i18n import N_
 
 HELD = N_("emergency stop until it is released")

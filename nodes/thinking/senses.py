@@ -11,7 +11,8 @@ from std_msgs.msg import Float32, String
 from brain.situation import Situation, refusal
 from nodes.parts.node import DEPTH, LessonNode, SensorListener
 from nodes.parts.odometry import OdometryListener
-from robot.topics import LLM_RESULT, SAFETY_STATE, SONAR_REAR, VLM_DESCRIPTION
+from robot.topics import LLM_RESULT, SONAR_REAR, VLM_DESCRIPTION
+from safety.topics import SAFETY_STATE
 
 T = TypeVar("T")
 _GATE_S, _POSE_S, _SEEN_S = 3.0, 2.0, 30.0

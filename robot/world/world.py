@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from robot.kinematics import WHEEL_RADIUS_M, WHEELBASE_M
+from robot.kinematics import BEHIND_M, LENGTH_M, WHEEL_RADIUS_M, WHEELBASE_M
 from robot.motion.odometry import Pose, advance
 from robot.words import DriveSetpoint
 
@@ -114,10 +114,9 @@ class Body:
 
     wheelbase_m: float = WHEELBASE_M
     wheel_radius_m: float = WHEEL_RADIUS_M
-    length_m: float = 0.35
+    length_m: float = LENGTH_M
     width_m: float = 0.20
-    behind_m: float = 0.05
-    """From the rear axle to the bumper behind it."""
+    behind_m: float = BEHIND_M
     motor_lag_s: float = 0.08
     """A wheel completes 63 % of a speed change in this time."""
     braking_m_s2: float = 2.5

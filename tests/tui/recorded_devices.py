@@ -127,6 +127,6 @@ def with_drivers(*samples: Sample) -> RecordedOpener:
 def _nodes() -> dict[str, NodeStatus]:
     commands = {"chassis": "nodes.chassis", "sonar_front": "nodes.tof_sonar"}
     return {
-        name: NodeStatus(name=name, command=command, state=NodeState.READY, pid=4200)
+        name: NodeStatus(name, command, NodeState.READY, pid=4200, roles=("driver",))
         for name, command in commands.items()
     }

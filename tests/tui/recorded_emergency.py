@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from graph.data import GraphUpdate, NodeRow, Sample
-from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from tests.tui.recorded import lesson_update, sample
 from tui.emergency.state import TOPIC_TYPE
 

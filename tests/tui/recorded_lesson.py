@@ -11,6 +11,7 @@ import numpy as np
 
 from graph.data import GraphUpdate, NodeRow, Sample, ServiceRow, TopicRow, Trouble
 from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
+from text.robot import robot
 from tui.session.requests import Lesson, Score, Task
 
 NOW_S = 1_767_225_600.0
@@ -43,6 +44,7 @@ NODES: dict[str, NodeStatus] = {
         cpu_percent=0.4 + 0.3 * index,
         memory_bytes=(17 + index) * 1_000_000,
         needs=tuple(_COMMANDS)[:-1] if name == "ai_brain" else (),
+        roles=robot().roles.get(f"nodes.{command}", ()),
     )
     for index, (name, command) in enumerate(_COMMANDS.items())
 }

@@ -40,7 +40,7 @@ from tui.composer.screen import ComposerScreen
 from tui.devices import drivers
 from tui.frame.key_bar import KeyBar
 from tui.frame.title_bar import TitleBar
-from tui.graph.places import GraphKind, GraphPlace
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.screen import GraphScreen
 from tui.panels.brain import BrainPanel
 from tui.panels.head import HeadReading, HeadView

@@ -16,7 +16,7 @@ from tests.tui.recorded_lesson import colour_bars
 from tests.tui.screen_stage import HOME, ScreenStage, on_stage
 from tests.tui.snapshots import Look
 from tests.waiting import until
-from tui.session.past import SONARS
+from tui.session.past import TRENDS
 from tui.topics.detail import TopicHead
 from tui.topics.screen import TopicsScreen
 
@@ -40,7 +40,7 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         """Choose a topic and wait until it is asked for."""
         self.screen.table.choose(topic)
         await until(
-            lambda: {*self.graph.wanted.watched, *SONARS} | self.graph.wanted.pictures == {topic, *SONARS},
+            lambda: {*self.graph.wanted.watched, *TRENDS} | self.graph.wanted.pictures == {topic, *TRENDS},
             lambda: f"{topic}, but {self.graph.wanted.watched}, {self.graph.wanted.pictures}",
         )
         await self.pilot.pause()
@@ -52,7 +52,7 @@ class TopicsStage(ScreenStage[TopicsScreen]):
         await self.pilot.pause()
 
     def head(self) -> str:
-        return self.screen.query_one(TopicHead).render().plain
+        return str(self.screen.query_one(TopicHead).content)
 
     def count(self) -> str:
         return str(self.screen.query_one("#topics-count", Static).content)

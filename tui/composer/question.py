@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from robot.commands.schema import CommandError, parse_llm
 from robot.commands.wrapping import THINK, unwrapped
-from robot.safety.gate_report import gate_in
-from robot.topics import LLM_RESULT, ODOMETRY, SAFETY_STATE, SONAR_FRONT, SONAR_REAR
+from robot.topics import LLM_RESULT, ODOMETRY, SONAR_FRONT, SONAR_REAR
+from safety.gate_report import gate_in
+from safety.topics import SAFETY_STATE
 from tui import clock
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from text.i18n import N_, _
 from text.plain import plain
 from tui.actions.action import Announce, actions_of
 from tui.actions.keys import WRITE_COMMAND
+from tui.screens import is_there
 
 if TYPE_CHECKING:
     from tui.deck.screen import LessonDeck
@@ -110,7 +111,7 @@ def edit_node(screen: LessonDeck) -> None:
     N_("Run a file of your own in the place of the selected node, or Deck's node again."),
     means="own or Deck's",
     footer=True,
-    when=_of_own_node,
+    when=lambda screen: is_there("course") and _of_own_node(screen),
     label=lambda screen: N_("Deck's own") if screen.chosen_file else N_("My own"),
 )
 def exchange_node(screen: LessonDeck) -> None:

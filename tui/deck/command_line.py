@@ -10,7 +10,6 @@ from textual.message import Message
 from textual.suggester import Suggester
 from textual.widgets import Input, Static
 
-from robot.words import WORDS, parse_word
 from text.i18n import _, decimal, language
 from text.plain import plain
 from tui.widgets.field import Field
@@ -26,6 +25,8 @@ LONGEST = 200
 
 def words_in_order(code: str) -> list[str]:
     """The words of the current language first, then those of the other."""
+    from robot.words import WORDS
+
     return [word for key in sorted(WORDS, key=lambda key: key != code) for word in WORDS[key]]
 
 
@@ -105,6 +106,8 @@ class CommandLine(Vertical):
 
     def on_language_changed(self) -> None:
         """Redraw in the current language."""
+        from robot.words import WORDS
+
         self.field.placeholder = ", ".join(WORDS[language()])
         self._show_remark()
 
@@ -137,6 +140,8 @@ class CommandLine(Vertical):
             return _("nobody listens to /ai_command: start ai_driver"), True
         if not text:
             return _("Enter sends, up and down recall"), False
+        from robot.words import parse_word
+
         setpoint = parse_word(text)
         if setpoint is not None:
             words = _("{speed} m/s, steering {steering} rad")

@@ -14,10 +14,10 @@ from graph.observer.requests import Publish
 from launcher.errors import LauncherError
 from launcher.profile.panels import PANELS, panels_for
 from launcher.status import NodeState, Severity
-from robot.topics import AI_COMMAND
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
+from text.robot import robot
 from text.sentences import reason_of
 from tui.actions import bindings
 from tui.deck.actions import DECK_ACTIONS
@@ -32,7 +32,7 @@ from tui.log_view.view import LogView
 from tui.panels.panel import row_of
 from tui.panels.panel_grid import PanelGrid
 from tui.session.messages import SessionChanged
-from tui.session.past import SONARS
+from tui.session.past import TRENDS
 from tui.session.words import node_command
 from tui.teleop.actions import TELEOP_ACTIONS, open_teleop
 from tui.teleop.dock import TeleopDock
@@ -59,7 +59,6 @@ if TYPE_CHECKING:
     from tui.session.messages import GraphChanged, LanguageChanged, LogArrived, StatusChanged
     from tui.widgets.rows import Rows
 
-DRIVER = "nodes.ai_driver"
 COMMANDS_TYPE = "std_msgs/msg/String"
 SMALL = (60, 18)
 """Columns and rows of the terminal below which panels are hidden."""
@@ -138,7 +137,8 @@ class LessonDeck(DeckScreen):
             yield self._grid
             with Vertical(id="talk"):
                 yield LogPane(LogView(max_lines=LOG_LINES, file_of=self.feed.log_file))
-                yield CommandLine(id="command")
+                if robot().words:
+                    yield CommandLine(id="command")
 
     # Actions
 
@@ -211,11 +211,11 @@ class LessonDeck(DeckScreen):
     def driven(self) -> bool:
         """Whether there is a node that takes commands in words."""
         if self.feed.watching:
-            row = None if self.feed.update is None else row_of(self.feed.update, AI_COMMAND)
+            row = None if self.feed.update is None else row_of(self.feed.update, robot().words)
             return row is not None and row.subscribers > 0
         if self.feed.link is None:
             return False
-        return any(DRIVER in (node.command, f"nodes.{node.name}") for node in self.feed.nodes.values())
+        return any("words" in (node.roles or robot().named(node.name)) for node in self.feed.nodes.values())
 
     def write_command(self) -> None:
         """Focus the command line at once, so that it receives the next key."""
@@ -223,9 +223,9 @@ class LessonDeck(DeckScreen):
 
     async def ros2_command(self) -> str:
         """Return what sends the command that is being typed, plays the recording, starts a node."""
-        line = self.query_one(CommandLine).field
-        if line.has_focus:
-            return ros2_words.pub(AI_COMMAND, COMMANDS_TYPE, {"data": line.value.strip()})
+        for line in self.query(CommandLine):
+            if line.field.has_focus:
+                return ros2_words.pub(robot().words, COMMANDS_TYPE, {"data": line.field.value.strip()})
         if self.feed.replay is not None and self.feed.link is not None:
             return ros2_words.play(self.feed.link.session.profile)
         name = self.chosen_node
@@ -237,7 +237,7 @@ class LessonDeck(DeckScreen):
     def on_command_line_command_sent(self, message: CommandLine.CommandSent) -> None:
         if self.feed.graph is None:
             return
-        sent = self.feed.graph.ask(Publish(AI_COMMAND, COMMANDS_TYPE, {"data": message.text}))
+        sent = self.feed.graph.ask(Publish(robot().words, COMMANDS_TYPE, {"data": message.text}))
         sent.add_done_callback(lambda done: self.app.call_later(self._tell_if_lost, done))
 
     def _tell_if_lost(self, sent: Future[int]) -> None:
@@ -323,7 +323,7 @@ class LessonDeck(DeckScreen):
         return set().union(*(panel.kept() for panel in self.panels))
 
     def past_topics(self) -> set[str]:
-        return set(SONARS)
+        return set(TRENDS)
 
     def follow_topics(self) -> set[str]:
         """The topics of which the panels need every message."""
@@ -417,8 +417,9 @@ class LessonDeck(DeckScreen):
         if is_new:
             self._lay_out(self.size.height)
             self.refresh_bindings()
-        row = row_of(message.update, AI_COMMAND)
-        self.query_one(CommandLine).show_listeners(0 if row is None else row.subscribers)
+        row = row_of(message.update, robot().words)
+        for line in self.query(CommandLine):
+            line.show_listeners(0 if row is None else row.subscribers)
         self._dock.take(message.update)
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:

@@ -12,10 +12,10 @@ from rich.cells import cell_len
 
 from graph.diagnostics import StatusLevel
 from graph.observer.requests import ReadParameters, SetParameters
-from robot.topics import DIAGNOSTICS
 from text.figures import elapsed, whole
 from text.i18n import N_, _, localized
 from text.plain import plain
+from text.ros_names import DIAGNOSTICS
 from tui.panels.panel import row_of
 from tui.widgets.rows import Cell, Column, Row, Rows
 
@@ -217,12 +217,6 @@ def no_frames(device: Device, topic: str | None, now_s: float) -> str:
     return _("Listening on {topic}: traffic on the port, if any, appears within a second.").format(topic=topic)
 
 
-DRIVERS = frozenset({"nodes.chassis", "nodes.tof_sonar", "nodes.camera", "nodes.audio"})
-"""Nodes that report on /diagnostics, whatever their parameters."""
-HEAD = "nodes.head_controller"
-"""Reports as well, if it has a port."""
-
-
 def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> list[str]:
     """Say why there is no driver at all, and what to do."""
     if feed.session is None:
@@ -234,7 +228,7 @@ def nobody(feed: Feed, update: GraphUpdate | None, lessons: tuple[str, ...]) -> 
         said_by = ", ".join(dict.fromkeys(plain(end.node) for end in row.published_by))
         words = _("{topic} is published by {nodes}; waiting for the first message.")
         return [words.format(topic=DIAGNOSTICS, nodes=said_by or "?")]
-    drivers = [name for name, node in feed.nodes.items() if node.command in DRIVERS]
+    drivers = [name for name, node in feed.nodes.items() if "driver" in node.roles]
     if drivers:
         words = _("{nodes} have not said anything on {topic} yet: see Deck (1) and Logs (4).")
         return [words.format(nodes=", ".join(map(plain, drivers)), topic=DIAGNOSTICS)]
@@ -260,16 +254,14 @@ def lessons_with_drivers() -> tuple[str, ...]:
             nodes = load_profile(entry.path).nodes.values()
         except LauncherError:
             continue
-        runs = {node.run for node in nodes if node.run != HEAD or "port" in node.params}
-        if runs & {*DRIVERS, HEAD}:
+        if any("driver" in node.roles for node in nodes):
             found.append(entry.name)
     return tuple(found)
 
 
-ROBOT = "nodes.mock_robot"
-"""It has trouble by parameters of its node, set as `ros2 param` does; their values are its own."""
 LINES = frozenset({"pico", "tof_front", "tof_rear", "lsc16"})
-"""Its pseudo-terminals, and the parameters for the trouble of each."""
+"""The pseudo-terminals of the simulated robot, and the parameters of its node for the trouble of each: set as
+`ros2 param` does, with values of their own."""
 POWERED = frozenset({"pico", "lsc16"})
 """The devices that measure the battery."""
 _REAL = PurePosixPath("/dev")
@@ -313,7 +305,7 @@ def simulated(device: Device | None, feed: Feed) -> tuple[str, str] | None:
     port = PurePosixPath(device.port)
     if port.name not in LINES or _REAL in port.parents:
         return None
-    robots = {name for name, node in feed.nodes.items() if node.command == ROBOT}
+    robots = {name for name, node in feed.nodes.items() if "simulator" in node.roles}
     names = [row.name for row in feed.update.nodes if row.name.rpartition("/")[2] in robots]
     return (names[0], port.name) if names else None
 

@@ -12,9 +12,9 @@ from textual.widgets import Static
 from graph.diagnostics import DiagnosticsBook
 from launcher.status import Severity
 from robot.frames.protocols import decode
-from robot.topics import DIAGNOSTICS
 from text import ros2_words
 from text.i18n import N_, _
+from text.ros_names import DIAGNOSTICS
 from tui import clock
 from tui.actions import bindings
 from tui.devices import drivers

@@ -51,7 +51,6 @@ class EchoLine:
 
 
 def echo_lines(message: Mapping[str, Value], is_open: IsOpen) -> list[EchoLine]:
-    """Return the lines of a message, at most `MAX_LINES` of them."""
     if not message:
         return [EchoLine(("",), "", _("(a message without fields)"), "note")]
     lines = list(islice(_children((), message, is_open), MAX_LINES + 1))
@@ -100,12 +99,9 @@ def _branch(path: Path, label: str, value: Value, is_open: IsOpen) -> Iterator[E
 
 def _contents(path: Path, value: Value, is_open: IsOpen) -> Iterator[EchoLine]:
     """Return the contents of a leaf that can be opened; nothing if its own line shows all of it."""
-    if isinstance(value, str):
-        if len(value) > CHUNK:
+    if isinstance(value, (str, bytes)):
+        if len(value) > (CHUNK if isinstance(value, str) else HEX_CHUNK):
             yield from _chunks(path, value)
-    elif isinstance(value, bytes):
-        if len(value) > HEX_CHUNK:
-            yield from _hex_dump(path, value)
     elif isinstance(value, (np.ndarray, Sequence)):
         yield from _numbered(path, value, is_open)
 
@@ -125,26 +121,23 @@ def _numbered(
         yield EchoLine((*path, shown), "", text, "note")
 
 
-def _chunks(path: Path, value: str) -> Iterator[EchoLine]:
-    shown = min(len(value), CHUNK * OPENED_ITEMS)
-    for start in range(0, shown, CHUNK):
-        yield EchoLine((*path, start), "", plain(value[start : start + CHUNK]), "text")
-    rest = len(value) - shown
-    if rest:
-        text = ngettext("… {n} more character", "… {n} more characters", rest).format(n=rest)
-        yield EchoLine((*path, shown), "", text, "note")
-
-
-def _hex_dump(path: Path, value: bytes) -> Iterator[EchoLine]:
-    shown = min(len(value), HEX_CHUNK * OPENED_ITEMS)
-    for start in range(0, shown, HEX_CHUNK):
-        row = value[start : start + HEX_CHUNK]
-        text = f"{start:06x}  {row.hex(' '):{3 * HEX_CHUNK}} {printable(row)}"
-        yield EchoLine((*path, start), "", text, "bytes")
-    rest = len(value) - shown
-    if rest:
-        text = ngettext("… {n} more byte", "… {n} more bytes", rest).format(n=rest)
-        yield EchoLine((*path, shown), "", text, "note")
+def _chunks(path: Path, value: str | bytes) -> Iterator[EchoLine]:
+    """Return a long text, or bytes, in lines of their own."""
+    is_text = isinstance(value, str)
+    size = CHUNK if is_text else HEX_CHUNK
+    for start in range(0, min(len(value), size * OPENED_ITEMS), size):
+        piece = value[start : start + size]
+        if isinstance(piece, str):
+            yield EchoLine((*path, start), "", plain(piece), "text")
+        else:
+            text = f"{start:06x}  {piece.hex(' '):{3 * HEX_CHUNK}} {printable(piece)}"
+            yield EchoLine((*path, start), "", text, "bytes")
+    rest = len(value) - size * OPENED_ITEMS
+    if rest > 0:
+        more = ngettext("… {n} more byte", "… {n} more bytes", rest)
+        if is_text:
+            more = ngettext("… {n} more character", "… {n} more characters", rest)
+        yield EchoLine((*path, len(value) - rest), "", more.format(n=rest), "note")
 
 
 SHOWN_CHARACTERS = 400
@@ -161,16 +154,11 @@ def is_branch(value: Value) -> bool:
     """Whether the value is a message, or a list of messages or lists, rather than a leaf."""
     if isinstance(value, Mapping):
         return True
-    return is_list(value) and bool(value) and isinstance(value[0], (Mapping, list, tuple))
-
-
-def is_list(value: Value) -> TypeGuard[Sequence[Value]]:
-    """Whether the value is an array of something other than numbers."""
-    return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+    is_list = isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+    return is_list and bool(value) and isinstance(value[0], (Mapping, list, tuple))  # type: ignore[index]
 
 
 def is_number(value: Value | np.generic) -> TypeGuard[float | bool | np.generic]:
-    """Whether the value is a number or a boolean."""
     return isinstance(value, (bool, int, float, np.generic))
 
 
@@ -214,16 +202,15 @@ def hexadecimal(value: bytes) -> str:
     head = value[:SHOWN_BYTES]
     more = " …" if len(value) > len(head) else ""
     preview = f"  {head.hex(' ')}{more}  {printable(head)}" if head else ""
-    return f"({byte_count(len(value))}){preview}"
+    count = ngettext("{n} byte", "{n} bytes", len(value)).format(n=len(value))
+    return f"({count}){preview}"
 
 
 def printable(value: bytes) -> str:
-    """Bytes as ASCII text, with a dot for each one that is not printable."""
     return "".join(chr(b) if FIRST_PRINTABLE <= b <= LAST_PRINTABLE else "·" for b in value)
 
 
 def array(values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.generic]]) -> str:
-    """An array as its length and its first items."""
     head = values[:SHOWN_ITEMS]
     shown = " ".join(scalar(item) for item in head)
     more = " …" if len(values) > len(head) else ""
@@ -231,7 +218,6 @@ def array(values: Sequence[Value] | np.ndarray[tuple[int, ...], np.dtype[np.gene
 
 
 def scalar(value: Value | np.generic) -> str:
-    """One value that is not a branch."""
     if isinstance(value, str):
         return quoted(value)
     if isinstance(value, bytes):
@@ -246,15 +232,8 @@ def scalar(value: Value | np.generic) -> str:
 
 
 def items(count: int) -> str:
-    """A number of items, in words."""
     return ngettext("{n} item", "{n} items", count).format(n=count)
 
 
 def characters(count: int) -> str:
-    """A number of characters, in words."""
     return ngettext("{n} character", "{n} characters", count).format(n=count)
-
-
-def byte_count(count: int) -> str:
-    """A number of bytes, in words."""
-    return ngettext("{n} byte", "{n} bytes", count).format(n=count)

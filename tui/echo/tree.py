@@ -5,34 +5,28 @@ A line is redrawn from the first character that has changed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Mapping
+from typing import ClassVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
+from rich.style import Style
 from textual.binding import Binding, BindingType
-from textual.geometry import Region, Size
+from textual.events import Click
+from textual.geometry import Region
 from textual.message import Message
-from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tui.echo.lines import EchoLine, echo_lines
-from tui.widgets.one_style import OneStyle
+from graph.data import Value
+from tui.echo.lines import EchoLine, Path, echo_lines
+from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.words import cut, word_strips
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from textual.events import Click
-
-    from graph.data import Value
-    from tui.echo.lines import Path
-
-HUGE_JUMP = 1_000_000
 OPEN, CLOSED, LEAF = "▾ ", "▸ ", "  "
 INDENT = 2
 
 
-class EchoTree(OneStyle, ScrollView, can_focus=True):
+class EchoTree(Rows):
     """Shows a message as a tree, or words where there is none.
 
     The folding belongs to the topic and outlives single messages. While the tree is paused it keeps
@@ -42,23 +36,11 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
     class PauseChanged(Message):
         """The tree was paused or resumed."""
 
-        def __init__(self, paused: bool) -> None:
-            super().__init__()
-            self.paused = paused
-
-    ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "echo-tree--key",
-        "echo-tree--number",
-        "echo-tree--text",
-        "echo-tree--bytes",
-        "echo-tree--note",
-        "echo-tree--mark",
-        "echo-tree--cursor",
+        f"echo-tree--{name}" for name in ("key", "number", "text", "bytes", "note", "mark", "cursor")
     }
     DEFAULT_CSS = """
     EchoTree {
-        width: 1fr; height: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
         &> .echo-tree--key { color: $text-primary; }
         &> .echo-tree--text { color: $text-success; }
         &> .echo-tree--bytes { color: $text-warning; }
@@ -69,79 +51,64 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         }
     }
     """
-
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up,k", "move(-1)", show=False),
-        Binding("down,j", "move(1)", show=False),
-        Binding("pageup", "page(-1)", show=False),
-        Binding("pagedown", "page(1)", show=False),
-        Binding("home", f"move(-{HUGE_JUMP})", show=False),
-        Binding("end", f"move({HUGE_JUMP})", show=False),
-        Binding("enter", "toggle_fold", show=False),
         Binding("right,l", "unfold", show=False),
         Binding("left,h", "fold", show=False),
     ]
 
-    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__(header=False)
         self._topic = ""
-        self._message: Mapping[str, Value] | None = None
+        self.message: Mapping[str, Value] | None = None
         self._waiting: Mapping[str, Value] | None = None
         """The newest message that came while it was paused."""
-        self._paused = False
+        self.paused = False
+        """Whether newer messages are held back."""
         self._folds: dict[str, dict[Path, bool]] = {}
         self._lines: list[EchoLine] = []
-        self._cursor = 0
         self._marks: Mapping[Path, str] = {}
         """Letters after the keys of lines, by path."""
         self._words = ("", "")
-        """Why there is no message."""
 
-    def show(self, topic: str, message: Mapping[str, Value]) -> None:
+    def show_message(self, topic: str, message: Mapping[str, Value]) -> None:
         """Show a message of a topic; a different topic ends a pause."""
         if topic != self._topic:
             self._begin(topic)
-        if self._paused and self._message is not None:
+        if self.paused and self.message is not None:
             self._waiting = message
             return
         self._words = ("", "")
-        self._message = message
+        self.message = message
         self._flatten()
 
     def show_words(self, topic: str, headline: str, detail: str = "") -> None:
-        """Show why there is no message."""
         if topic != self._topic:
             self._begin(topic)
-        elif (headline, detail) == self._words and self._message is None:
+        elif (headline, detail) == self._words and self.message is None:
             return
-        self._message, self._lines, self._cursor = None, [], 0
+        self.message, self._lines = None, []
         self._words = (headline, detail)
-        self.virtual_size = Size(0, 0)
+        self.show([Column("")], ())
         self.refresh()
 
-    @property
-    def message(self) -> Mapping[str, Value] | None:
-        return self._message
-
-    @property
-    def paused(self) -> bool:
-        """Whether newer messages are held back."""
-        return self._paused
-
     def pause(self, paused: bool) -> None:
-        """Pause, or resume with the newest message."""
-        if paused == self._paused:
+        if paused == self.paused:
             return
-        self._paused = paused
+        self.paused = paused
         if not paused and self._waiting is not None:
-            self._message, self._waiting = self._waiting, None
+            self.message, self._waiting = self._waiting, None
             self._flatten()
-        self.post_message(self.PauseChanged(paused))
+        self.post_message(self.PauseChanged())
+
+    @property
+    def _line(self) -> EchoLine | None:
+        """The line at the cursor."""
+        index = self._index(self._chosen)
+        return None if index is None else self._lines[index]
 
     @property
     def at_cursor(self) -> Path | None:
-        line = self._line_at(self._cursor)
-        return None if line is None else line.path
+        return None if self._line is None else self._line.path
 
     def mark(self, marks: Mapping[Path, str]) -> None:
         """Show these letters after the keys of the lines at these paths."""
@@ -153,21 +120,15 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         self._flatten()
         self.refresh()
 
-    def action_move(self, by: int) -> None:
-        self._move_to(self._cursor + by)
-
-    def action_page(self, pages: int) -> None:
-        self._move_to(self._cursor + pages * max(1, self.size.height - 1))
-
-    def action_toggle_fold(self) -> None:
+    def action_open(self) -> None:
         """Fold or unfold the branch at the cursor."""
-        line = self._line_at(self._cursor)
+        line = self._line
         if line is not None and line.open is not None:
             self._set_open(line.path, not line.open)
 
     def action_unfold(self) -> None:
         """Unfold the branch at the cursor, or enter it."""
-        line = self._line_at(self._cursor)
+        line = self._line
         if line is not None and line.open is False:
             self._set_open(line.path, True)
         elif line is not None and line.open:
@@ -175,71 +136,44 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
 
     def action_fold(self) -> None:
         """Fold the branch at the cursor, or go to its parent."""
-        line = self._line_at(self._cursor)
-        if line is None:
-            return
-        if line.open:
+        line = self._line
+        if line is not None and line.open:
             self._set_open(line.path, False)
-            return
-        parents = [i for i, other in enumerate(self._lines) if other.path == line.path[:-1]]
-        if parents:
-            self._move_to(parents[0])
+        elif line is not None:
+            self.choose(_key(line.path[:-1]))
 
     def on_click(self, event: Click) -> None:
-        """Move the cursor to the clicked line, and fold or unfold it."""
         index = event.y + self.scroll_offset.y
-        if self._line_at(index) is not None:
-            self._move_to(index)
-            self.action_toggle_fold()
+        event.prevent_default()
+        if index < len(self._lines) and self._rows[index].key:
+            self._choose(index)
+            self.action_open()
+
+    def on_rows_highlighted(self, event: Rows.Highlighted) -> None:
+        """Keep it to itself: to move here chooses nothing."""
+        event.stop()
 
     def _begin(self, topic: str) -> None:
         self._topic = topic
-        self._message = self._waiting = None
-        self._lines, self._cursor = [], 0
+        self.message = self._waiting = None
+        self._lines, self._rows, self._chosen = [], (), ""
         self.pause(False)
         self.scroll_to(0, 0, animate=False, immediate=True)
 
     def _flatten(self) -> None:
-        if self._message is None:
-            return
-        folds = self._folds.setdefault(self._topic, {})
-        before = self._lines
-        at = before[self._cursor].path if self._cursor < len(before) else None
-        self._lines = echo_lines(self._message, folds.get)
-        if len(before) != len(self._lines):
-            self.virtual_size = Size(0, len(self._lines))
-            self._cursor = self._find(at)
-            self.refresh()
-            return
-        top = self.scroll_offset.y
-        for index in range(top, min(top + self.size.height, len(self._lines))):
-            self._refresh_difference(index, before[index], self._lines[index])
-
-    def _find(self, path: Path | None) -> int:
-        for index, line in enumerate(self._lines):
-            if line.path == path:
-                return index
-        return max(0, min(self._cursor, len(self._lines) - 1))
-
-    def _line_at(self, index: int) -> EchoLine | None:
-        return self._lines[index] if 0 <= index < len(self._lines) else None
+        if self.message is not None:
+            self._lines = echo_lines(self.message, self._folds.setdefault(self._topic, {}).get)
+            texts = (f"{_margin(line)}{line.label} {line.text}" for line in self._lines)
+            rows = [Row(_key(line.path), (Cell(text),)) for line, text in zip(self._lines, texts, strict=True)]
+            self.show([Column("")], rows, near=self._index(self._chosen) or 0)
 
     def _set_open(self, path: Path, opened: bool) -> None:
         self._folds.setdefault(self._topic, {})[path] = opened
         self._flatten()
 
-    def _move_to(self, index: int) -> None:
-        index = max(0, min(index, len(self._lines) - 1))
-        if index != self._cursor:
-            self.refresh_line(self._cursor)
-            self._cursor = index
-            self.refresh_line(index)
-        self.scroll_to_region(Region(0, index, 1, 1), animate=False, immediate=True)
-
     # Drawing
 
     def render_line(self, y: int) -> Strip:
-        """One line of the tree, or of the words in its place."""
         width = self.scrollable_size.width
         if not self._lines:
             strips = word_strips(self._words, width, self.rich_style, self.app.console)
@@ -247,48 +181,36 @@ class EchoTree(OneStyle, ScrollView, can_focus=True):
         index = y + self.scroll_offset.y
         if index >= len(self._lines):
             return Strip.blank(width, self.rich_style)
-        line = self._lines[index]
-        segments = self._segments(line)
-        if index == self._cursor and self.has_focus:
+        segments = self._segments(self._lines[index])
+        if self._chosen and self._rows[index].key == self._chosen and self.has_focus:
             cursor = self.get_component_rich_style("echo-tree--cursor")
             return cut([Segment(text, cursor) for text, _, _ in segments], width, cursor)
         return cut(segments, width, self.rich_style)
 
-    def on_resize(self) -> None:
-        """Redraw at the new width."""
-        self.refresh()
-
-    def on_focus(self) -> None:
-        """Draw the cursor as focused."""
-        self.refresh_line(self._cursor)
-
-    def on_blur(self) -> None:
-        """Draw the cursor as unfocused."""
-        self.refresh_line(self._cursor)
-
-    def _refresh_difference(self, index: int, before: EchoLine, after: EchoLine) -> None:
-        if before is after or before == after:
-            return
-        same = _same_cells(_line_text(before), _line_text(after))
-        width = self.scrollable_size.width
-        if same < width:
-            self.refresh(Region(same, index - self.scroll_offset.y, width - same, 1))
+    def _refresh_changed(self, before: tuple[Row, ...]) -> None:
+        """Redraw each line in sight from the first character that has changed."""
+        top, width = self.scroll_offset.y, self.scrollable_size.width
+        for index in range(top, min(top + self.size.height, len(self._rows), len(before))):
+            old, new = before[index].cells[0].text, self._rows[index].cells[0].text
+            same = 0 if before[index].key != self._rows[index].key else _same_cells(old, new)
+            if old != new and same < width:
+                self.refresh(Region(same, index - top, width - same, 1))
 
     def _segments(self, line: EchoLine) -> list[Segment]:
+        def part(name: str) -> Style:
+            return base + self.get_component_rich_style(f"echo-tree--{name}", partial=True)
+
         base = self.rich_style
-        key = base + self.get_component_rich_style("echo-tree--key", partial=True)
-        kind = base
-        if line.kind not in ("branch", "number"):
-            kind = base + self.get_component_rich_style(f"echo-tree--{line.kind}", partial=True)
-        elif line.kind == "branch":
-            kind = base + self.get_component_rich_style("echo-tree--note", partial=True)
-        mark = base + self.get_component_rich_style("echo-tree--mark", partial=True)
         return [
             Segment(_margin(line), base),
-            Segment(f"{line.label} " if line.label else "", key),
-            Segment(line.text, kind),
-            Segment(f"  ◂ {self._marks[line.path]}" if line.path in self._marks else "", mark),
+            Segment(f"{line.label} " if line.label else "", part("key")),
+            Segment(line.text, part("note" if line.kind == "branch" else line.kind)),
+            Segment(f"  ◂ {self._marks[line.path]}" if line.path in self._marks else "", part("mark")),
         ]
+
+
+def _key(path: Path) -> str:
+    return "\0".join(map(str, path))
 
 
 def _same_cells(before: str, after: str) -> int:
@@ -302,7 +224,3 @@ def _same_cells(before: str, after: str) -> int:
 def _margin(line: EchoLine) -> str:
     mark = LEAF if line.open is None else OPEN if line.open else CLOSED
     return " " * (INDENT * line.depth) + mark
-
-
-def _line_text(line: EchoLine) -> str:
-    return f"{_margin(line)}{line.label} {line.text}" if line.label else _margin(line) + line.text

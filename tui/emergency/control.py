@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graph.observer.requests import PreparePublisher, Publish, StopPublishingAll
-from robot.safety.stop_file import StopFile
-from robot.topics import EMERGENCY_STOP
+from safety.stop_file import StopFile
+from safety.topics import EMERGENCY_STOP
 from text.i18n import _
 from text.plain import plain
 from tui import clock

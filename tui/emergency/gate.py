@@ -6,11 +6,11 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from robot.safety.gate_report import STOPPED, Gate
-from robot.topics import DRIVE_TELEOP
+from safety.gate_report import STOPPED, Gate
 from text.figures import figure
 from text.i18n import N_, _
 from text.plain import plain
+from text.robot import robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -49,8 +49,6 @@ ONE_TOO_RARE = {
 REFUSED = {"m/s": N_("{value} m/s, limit {limit} m/s"), "rad": N_("{value} rad, limit {limit} rad")}
 BEYOND = re.compile(r"(?P<value>\S+) (?P<unit>\S+), limit (?P<limit>\S+) (?P=unit)")
 STAMP = re.compile(r"stamp (?P<age>\S+) s old")
-SOURCES = {DRIVE_TELEOP: N_("the keys")}
-"""Sources with a better name than that of their topic."""
 
 
 def held_words(gate: Gate) -> str:
@@ -92,7 +90,7 @@ def gate_words(gate: Gate) -> str:
         free = _("the path is clear")
         parts.append((f"{free}: {far}" if far else free) if gate.verdict else gate.message)
     if gate.source:
-        source = _(SOURCES[gate.source]) if gate.source in SOURCES else gate.source
+        source = _("the keys") if gate.source == robot().keys else gate.source
         parts.append(_("obeys {source}").format(source=source))
     if gate.ignored:
         parts.append(_("ignores {source}").format(source=gate.ignored))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robot.topics import EMERGENCY_STATE
+from safety.topics import EMERGENCY_STATE
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample

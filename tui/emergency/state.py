@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from robot.safety.gate_report import STOPPED, Gate, gate_in
-from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
+from safety.gate_report import STOPPED, Gate, gate_in
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP, SAFETY_STATE
 from text.i18n import N_
 from text.plain import plain
 from tui.emergency.gate import held_words, refused_words

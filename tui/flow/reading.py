@@ -20,20 +20,20 @@ from robot.topics import (
 )
 from text.i18n import localized
 from text.plain import plain
+from text.robot import robot
 from tui.flow.chains import FlowStep, Lane, StepKind
 from tui.outcome import words as outcome_words
 from tui.outcome.model_usage import COMPOSER, brain_reports, usage_noted
 from tui.panels.voice import LEVELS, heard
-from tui.session.past import FLOW_TOPICS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from graph.data import Sample, Value
-    from launcher.status import LogLine
+    from launcher.status import LogLine, NodeStatus
     from tui.outcome.model_usage import UsageFigures
 
-TOPICS = FLOW_TOPICS
+TOPICS = robot().story
 
 SPOKEN_LEVEL = 3
 """Of the eight levels of loudness: a quieter sound is not a voice (about -38 dB)."""
@@ -46,16 +46,13 @@ LONGEST = 300
 AGENT = "agent"
 """The `source` of lines about agents."""
 
-LANES = {
-    "nodes.ai_brain": Lane.BRAIN,
-    "nodes.llm_parser": Lane.BRAIN,
-    "nodes.head_controller": Lane.HEAD,
-    "ai_brain": Lane.BRAIN,
-    "llm_parser": Lane.BRAIN,
-    "head_controller": Lane.HEAD,
-    COMPOSER: Lane.BRAIN,
-}
-"""The lane of a node's log, by its program, or by its name if the program is unknown."""
+
+def lane_of(node: str, roles: Iterable[str] = ()) -> Lane:
+    """Return the lane of a node's log, by its roles, or by its name if none are known."""
+    plays = roles or robot().named(node)
+    if "brain" in plays or node == COMPOSER:
+        return Lane.BRAIN
+    return Lane.HEAD if "head" in plays else Lane.LOG
 
 
 class FlowReader:
@@ -97,7 +94,7 @@ class FlowReader:
         """A step for each answer: the same is reported again once a second."""
         for report in brain_reports(sample):
             # Whoever looks through the camera reports here, too, and leads to no commands.
-            if LANES.get(report.node) is not Lane.BRAIN:
+            if lane_of(report.node) is not Lane.BRAIN:
                 continue
             is_new = report.node in self._usages and report.usage != self._usages[report.node]
             self._usages[report.node] = report.usage
@@ -146,14 +143,14 @@ def _is_still(now_rad: float, before_rad: float) -> bool:
     return abs(now_rad - before_rad) < STILL_RAD or (math.isnan(now_rad) and math.isnan(before_rad))
 
 
-def log_steps(lines: Iterable[LogLine], programs: Mapping[str, str]) -> list[FlowStep]:
-    """Read log lines of nodes; `programs` maps the nodes of the session to their programs."""
+def log_steps(lines: Iterable[LogLine], nodes: Mapping[str, NodeStatus]) -> list[FlowStep]:
+    """Read log lines of nodes; `nodes` are those of the session."""
     return [
         _agent_step(line)
         if line.source == AGENT
         else FlowStep(
             line.time_s,
-            LANES.get(programs.get(line.node, ""), LANES.get(line.node, Lane.LOG)),
+            lane_of(line.node, nodes[line.node].roles if line.node in nodes else ()),
             plain(line.node, LONGEST),
             plain(line.node, LONGEST),
             text=plain(localized(line.text) if line.source == "deck" else line.text, LONGEST),

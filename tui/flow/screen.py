@@ -121,8 +121,7 @@ class FlowScreen(DeckScreen):
             self._show()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        programs = {name: node.command for name, node in self.feed.nodes.items()}
-        steps = log_steps(message.lines, programs)
+        steps = log_steps(message.lines, self.feed.nodes)
         self._has_agents = self._has_agents or any(step.lane is Lane.AGENT for step in steps)
         self._take(steps)
 

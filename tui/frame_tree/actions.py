@@ -15,7 +15,6 @@ action: Announce[FramesScreen] = Announce()
 
 
 def _has_frames(screen: FramesScreen) -> bool | None:
-    """Only with a frame at the cursor."""
     return True if screen.chosen else None
 
 
@@ -32,8 +31,7 @@ def relative_to(screen: FramesScreen) -> None:
 
 
 def _has_findings(screen: FramesScreen) -> bool | None:
-    """Only if anything is wrong."""
-    return True if screen.has_findings else None
+    return True if screen.findings else None
 
 
 @action(
@@ -44,7 +42,7 @@ def _has_findings(screen: FramesScreen) -> bool | None:
     means="next",
     footer=True,
     when=_has_findings,
-    shown=lambda screen: screen.has_findings,
+    shown=lambda screen: bool(screen.findings),
     label=lambda _: N_("Finding"),
 )
 def next_finding(screen: FramesScreen) -> None:
@@ -84,10 +82,10 @@ def copy_transform(screen: FramesScreen) -> None:
     footer=True,
     priority=True,
     anywhere=True,
-    when=lambda screen: screen.has_frames and screen.focused is not screen.filter,
+    when=lambda screen: bool(screen.frame_tree.frames) and screen.focused is not screen.filter,
 )
 def filter_frames(screen: FramesScreen) -> None:
-    screen.focus_filter()
+    screen.set_focus(screen.filter)
 
 
 @action(
@@ -113,7 +111,8 @@ async def frames_in_3d(screen: FramesScreen) -> None:
     when=_has_frames,
 )
 def other_way_round(screen: FramesScreen) -> None:
-    screen.turn_round()
+    screen.turned = not screen.turned
+    screen.show_pair()
 
 
 FRAMES_ACTIONS = actions_of(__name__)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from graph.data import FrameRow
 from graph.frames.findings import is_stale
 from text.figures import elapsed, figure
 from text.i18n import _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from graph.data import FrameRow
     from graph.frames.tree import TreeLine
 
 LONGEST = 120
@@ -31,7 +31,6 @@ def heard_of(line: TreeLine) -> FrameRow | None:
 
 
 def name(line: TreeLine) -> str:
-    """Return its name behind the lines that lead to it."""
     branch = line.branch
     shown = branch if len(branch) <= DEEPEST else f"…{branch[-DEEPEST:]}"
     return f"{shown}{plain(line.frame, LONGEST)}"
@@ -52,7 +51,6 @@ def state(line: TreeLine) -> Words:
 
 
 def age(line: TreeLine) -> Words:
-    """Return for how long nothing has come."""
     heard = heard_of(line)
     if heard is None:
         return "", ""

@@ -2,32 +2,75 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Container, Vertical, VerticalScroll
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from graph.data import GraphUpdate
+from graph.findings.finding import GraphFinding
 from graph.frames.findings import findings_in
-from graph.frames.tree import FrameTree
+from graph.frames.tree import FrameTree, TreeLine
 from text import ros2_words
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
-from tui.frame_tree import words
+from tui.frame_tree import cells, words
 from tui.frame_tree.actions import FRAMES_ACTIONS
-from tui.frame_tree.pair import FramePair, FramePairs, pair_lines, pair_text, publisher_line
-from tui.frame_tree.table import FrameTable, frame_of, key_of
+from tui.frame_tree.words import FramePair, FramePairs, pair_lines, pair_text, publisher_line
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.field import Field
+from tui.widgets.rows import Cell, Column, Row, Rows
 
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
+STATE, AGE = 11, 7
+NARROW, WIDE = 18, 30
+BETWEEN = "\0"
+"""Between parent and frame in the key of a row: in no name."""
 
-    from graph.data import GraphUpdate
-    from graph.frames.findings import FrameFinding
-    from graph.frames.tree import TreeLine
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
+
+def key_of(line: TreeLine) -> str:
+    return f"{line.parent}{BETWEEN}{line.frame}"
+
+
+def frame_of(key: str) -> str:
+    return key.partition(BETWEEN)[2]
+
+
+class FrameTable(Rows):
+    """One row for each frame below each of its parents."""
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave Enter to the screen, whose footer says what it does."""
+        return False if action == "open" else super().check_action(action, parameters)
+
+    def show_tree(self, lines: Sequence[TreeLine], looks: Mapping[str, str], relative_to: str, *, wide: bool) -> None:
+        """Show the tree; one frame has been marked, `looks` are `warn`, `dim` or none for each."""
+        columns = [
+            Column(_("frame")),
+            Column(_("rate"), STATE, right=True),
+            Column(_("age"), AGE, right=True),
+            Column(_("publisher"), WIDE if wide else NARROW),
+        ]
+        rows = [_row(line, looks.get(line.frame, ""), relative_to) for line in lines]
+        self.show(columns, rows or [Row("", (Cell(_("nothing matches the filter"), "dim"),))])
+
+
+def _row(line: TreeLine, look: str, relative_to: str) -> Row:
+    marks = (" ◎" if line.frame == relative_to else "") + (" !" if look == "warn" else "")
+    return Row(
+        key_of(line),
+        (
+            Cell(cells.name(line) + marks, look),
+            Cell(*cells.state(line)),
+            Cell(*cells.age(line)),
+            Cell(*cells.publisher(line)),
+        ),
+    )
+
 
 WIDE_FROM = 160
 """Width of the screen from which on names of nodes have more room."""
@@ -77,19 +120,18 @@ class FramesScreen(DeckScreen):
     def __init__(self) -> None:
         super().__init__()
         self._update: GraphUpdate | None = None
-        self._tree = FrameTree(())
+        self.frame_tree: FrameTree = FrameTree(())
         self._lines: list[TreeLine] = []
-        self._findings: list[FrameFinding] = []
+        self.findings: list[GraphFinding] = []
         self._pairs = FramePairs()
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
-        self._turned = False
+        self.turned = False
         self._able = (False, False, False)
         """Whether a frame is chosen, and there is a finding, and a tree, to act on."""
         self._said: dict[str, list[tuple[str, str]]] = {}
 
     def compose_body(self) -> ComposeResult:
-        """The tree, the transform and the findings, or why there is no frame."""
         yield Static(id="frames-empty", markup=False)
         with Container(id="frames-body"):
             with Vertical(id="frames-tree"):
@@ -100,51 +142,33 @@ class FramesScreen(DeckScreen):
                 with VerticalScroll(id="frames-findings"):
                     yield Static(markup=False)
 
-    @property
-    def table(self) -> FrameTable:
-        return self.query_one(FrameTable)
-
-    @property
-    def filter(self) -> Input:
-        return self.query_one("#frames-filter", Input)
+    table = getters.query_one(FrameTable)
+    filter: getters.query_one[Input] = getters.query_one("#frames-filter", Input)
 
     @property
     def chosen(self) -> str:
-        """The frame at the cursor, empty if there is none."""
         return frame_of(self.table.chosen) if self.is_mounted and self._lines else ""
 
     @property
-    def has_frames(self) -> bool:
-        return bool(self._tree.frames)
-
-    @property
-    def has_findings(self) -> bool:
-        return bool(self._findings)
-
-    @property
     def pair(self) -> FramePair | None:
-        """What is shown of the frame at the cursor."""
         source = self.chosen
         if not source:
             return None
-        target = self._relative_to or self._tree.root_of(source)
-        return self._pairs.find(*((source, target) if self._turned else (target, source)))
+        target = self._relative_to or self.frame_tree.root_of(source)
+        return self._pairs.find(*((source, target) if self.turned else (target, source)))
 
     def on_mount(self) -> None:
-        """Put the keys to the tree, and say why there is nothing yet."""
         self.table.focus()
         self._show()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Begin anew with a new session."""
         del message
         if self.feed.session is not None:
-            self._update, self._relative_to, self._turned = None, "", False
+            self._update, self._relative_to, self.turned = None, "", False
             self._pairs.clear()
         self._show()
 
     def on_status_changed(self, message: StatusChanged) -> None:
-        """Update the words for when there is no frame yet."""
         del message
         if not self._lines:
             self._show()
@@ -159,12 +183,11 @@ class FramesScreen(DeckScreen):
         self._show()
 
     def on_resize(self) -> None:
-        """Fit the columns to the new width."""
         self.call_after_refresh(self._show)
 
     @on(FrameTable.Highlighted)
     def _cursor_moved(self) -> None:
-        self._show_pair()
+        self.show_pair()
         self._show_findings()
         self.refresh_bindings()
 
@@ -177,7 +200,6 @@ class FramesScreen(DeckScreen):
         self.table.focus()
 
     def key_escape(self) -> None:
-        """Leave the filter, and show every frame again."""
         self.filter.value = ""
         self.table.focus()
 
@@ -188,22 +210,12 @@ class FramesScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the transform that is shown."""
         pair = self.pair
         return ros2_words.tf2_echo(pair.target, pair.source) if pair else ""
 
-    def focus_filter(self) -> None:
-        self.set_focus(self.filter)
-
     def relate(self) -> None:
-        """Show frames relative to the one at the cursor, or to the root again."""
         self._relative_to = "" if self._relative_to == self.chosen else self.chosen
         self._show()
-
-    def turn_round(self) -> None:
-        """Show the one frame in the other, or the other way round."""
-        self._turned = not self._turned
-        self._show_pair()
 
     def go_to_finding(self, step: int) -> None:
         """Go to the next frame that something is wrong with, or to the one before."""
@@ -230,19 +242,19 @@ class FramesScreen(DeckScreen):
 
     @property
     def _wrong(self) -> frozenset[str]:
-        return frozenset(frame for one in self._findings for frame in one.frames)
+        return frozenset(frame for one in self.findings for frame in one.nodes)
 
     def _show(self) -> None:
         # Without its parts it is just being opened or closed.
         if not self.query("#frames-filter"):
             return
         update = self._update
-        self._tree = FrameTree(() if update is None else update.frames)
+        self.frame_tree = FrameTree(() if update is None else update.frames)
         self._lines, fitting = self._fitting()
-        self._findings = [] if update is None else findings_in(update, self._tree)
-        if self._relative_to not in self._tree.frames:
+        self.findings = [] if update is None else findings_in(update, self.frame_tree)
+        if self._relative_to not in self.frame_tree.frames:
             self._relative_to = ""
-        empty = not self._tree.frames and not self._findings
+        empty = not self.frame_tree.frames and not self.findings
         self.query_one("#frames-body").display = not empty
         note = self.query_one("#frames-empty", Static)
         note.display = empty
@@ -256,23 +268,23 @@ class FramesScreen(DeckScreen):
         looks |= dict.fromkeys(self._wrong, "warn")
         wide = self.size.width >= WIDE_FROM
         self.table.show_tree(self._lines, looks, self._relative_to, wide=wide)
-        self._show_pair()
+        self.show_pair()
         self._show_findings()
-        able = (bool(self.chosen), self.has_findings, self.has_frames)
+        able = (bool(self.chosen), bool(self.findings), bool(self.frame_tree.frames))
         if able != self._able:
             self._able = able
             self.refresh_bindings()
 
     def _fitting(self) -> tuple[list[TreeLine], frozenset[str]]:
         """Return what the filter leaves of the tree, and the frames in it that match themselves."""
-        lines = self._tree.lines()
+        lines = self.frame_tree.lines()
         parts = self.filter.value.casefold().split()
         if not parts:
-            return lines, self._tree.frames
+            return lines, self.frame_tree.frames
         fitting = frozenset(line.frame for line in lines if words.fits(line, parts))
-        return self._tree.lines(self._tree.with_ancestors(fitting)), fitting
+        return self.frame_tree.lines(self.frame_tree.with_ancestors(fitting)), fitting
 
-    def _show_pair(self) -> None:
+    def show_pair(self) -> None:
         pair = self.pair
         room = self.query_one("#frames-pair").scrollable_content_region.width
         lines = [_("no frame")] if pair is None else pair_lines(pair, room)
@@ -285,7 +297,7 @@ class FramesScreen(DeckScreen):
 
     def _show_findings(self) -> None:
         room = self.query_one("#frames-findings").scrollable_content_region.width
-        lines = words.finding_lines(self._findings, self.chosen, room)
+        lines = words.finding_lines(self.findings, self.chosen, room)
         self._say("#frames-findings > Static", [(text, MEANINGS[look]) for text, look in lines])
 
     def _say(self, where: str, lines: list[tuple[str, str]]) -> None:

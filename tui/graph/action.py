@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
+from typing import Any, ClassVar
 
+from textual.binding import BindingType
 from textual.content import Content
 
 from graph.data import Goal, GoalStatus, SeenGoal
@@ -16,17 +18,9 @@ from text.i18n import N_, _, localized
 from text.plain import plain
 from text.sentences import reason_of
 from tui.dialogs.dialog import Dialog, answers
-from tui.graph.ask import AskPane
+from tui.graph.ask import Answer, AskPane
 from tui.graph.pane import LONGEST
 from tui.widgets.rows import Cell, Column, Row
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from concurrent.futures import Future
-
-    from textual.binding import BindingType
-
-    from tui.graph.ask import Answer
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
@@ -121,7 +115,6 @@ class ActionPane(AskPane):
 
     @property
     def can_cancel(self) -> bool:
-        """Whether any goal is still active."""
         return self._to_cancel is not None
 
     @property
@@ -133,18 +126,18 @@ class ActionPane(AskPane):
         """Cancel a goal; one of another client only after confirmation."""
         graph, goal = self.deck.feed.graph, self._to_cancel
         if isinstance(goal, SeenGoal):
-            self.app.push_screen(CancelGoalScreen(goal), partial(self._cancel_of_others, goal))
+            seen = CancelSeenGoal(goal.action, goal.goal_id)
+
+            def answered(wanted: bool | None) -> None:
+                if wanted and graph is not None:
+                    graph.ask(seen)
+
+            self.app.push_screen(CancelGoalScreen(goal), answered)
         elif graph is not None and goal is not None:
             graph.ask(CancelGoal(goal.number))
 
-    def _cancel_of_others(self, goal: SeenGoal, wanted: bool | None) -> None:
-        graph = self.deck.feed.graph
-        if graph is not None and wanted:
-            graph.ask(CancelSeenGoal(goal.action, goal.goal_id))
-
     @property
     def can_forget(self) -> bool:
-        """Whether one of Deck's own goals is chosen."""
         return isinstance(self.chosen, Goal)
 
     def forget(self) -> None:

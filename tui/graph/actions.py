@@ -20,7 +20,7 @@ action: Announce[GraphScreen] = Announce()
     N_("Go into the form of the service or action; Escape comes back to the list."),
     footer=True,
     priority=True,
-    when=lambda screen: screen.ask_pane is not None and screen.shows_pane and screen.is_in_list,
+    when=lambda screen: screen.ask_pane is not None and screen.shows_pane and screen.focused is screen.names,
     shown=lambda screen: screen.ask_pane is not None and not screen.ask_pane.can_cancel,
 )
 def fill_in(screen: GraphScreen) -> None:
@@ -29,7 +29,6 @@ def fill_in(screen: GraphScreen) -> None:
 
 
 def _may_change_state(screen: GraphScreen) -> bool | None:
-    """Only for a node that can change now."""
     pane = screen.node_pane
     return pane is not None and bool(pane.transitions) and screen.shows_pane
 
@@ -59,11 +58,10 @@ def change_lifecycle(screen: GraphScreen) -> None:
     when=lambda screen: not screen.is_typing,
 )
 def filter_names(screen: GraphScreen) -> None:
-    screen.focus_filter()
+    screen.set_focus(screen.filter)
 
 
 def _shows_live_node(screen: GraphScreen) -> bool | None:
-    """Only for a node, and not in a recording."""
     if screen.feed.replay is not None:
         return False
     return screen.node_pane is not None and screen.shows_pane
@@ -153,7 +151,6 @@ def cancel_request(screen: GraphScreen) -> None:
 
 
 def _shows_own_goal(screen: GraphScreen) -> bool | None:
-    """Only for an action whose goals are visible."""
     pane = screen.ask_pane
     return pane is not None and pane.can_forget and screen.shows_pane
 

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar, TypeAlias
 
+from textual import getters
+from textual.app import ComposeResult
 from textual.containers import Container, Vertical
+from textual.widget import Widget
 from textual.widgets import Static
 
 from text.i18n import _
 from tui.echo.tree import EchoTree
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
-from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
-from tui.widgets.rows import Rows
-from tui.yaml_form.actions import submit_form
-from tui.yaml_form.form import YamlForm
+from tui.widgets.rows import Column, Row, Rows
+from tui.yaml_form.form import YamlForm, submit_form
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from textual.app import ComposeResult
-    from textual.widget import Widget
-
-    from tui.widgets.rows import Column, Row
-
-    Answer = tuple[str, str, "Mapping[str, Any] | tuple[str, str]"]
+Answer: TypeAlias = "tuple[str, str, Mapping[str, Any] | tuple[str, str]]"
 
 
 class AskPane(GraphPane):
@@ -52,7 +47,6 @@ class AskPane(GraphPane):
     def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self._texts: dict[str, str] = {}
-        """Maps a name to the text that was in its form."""
         self._could_cancel = False
         self._form_for = ""
 
@@ -69,17 +63,10 @@ class AskPane(GraphPane):
                 yield Rows(header=False, classes="asked")
 
     def compose_more(self) -> ComposeResult:
-        """Yield further widgets below the form."""
         yield from ()
 
-    @property
-    def form(self) -> YamlForm:
-        return self.query_one(YamlForm)
-
-    @property
-    def asked_rows(self) -> Rows:
-        """The requests sent so far."""
-        return self.query_one(".asked", Rows)
+    form = getters.query_one(YamlForm)
+    asked_rows = getters.query_one(".asked", Rows)
 
     @property
     def submit_key(self) -> str:
@@ -117,7 +104,6 @@ class AskPane(GraphPane):
         """Remove the chosen request from the list."""
 
     def ros2_line(self, type_name: str, value: Mapping[str, Any]) -> str:
-        """Return what sends this request, as a command line of `ros2`."""
         raise NotImplementedError
 
     def ros2_info(self) -> str:
@@ -126,7 +112,6 @@ class AskPane(GraphPane):
 
     @property
     def _type(self) -> str:
-        """The type that is used, empty if what is shown has left the graph."""
         ends = self.ends()
         return ends[0][0] if ends is not None and ends[0] else ""
 
@@ -137,7 +122,6 @@ class AskPane(GraphPane):
         return self.ros2_info() if self.name_shown else ""
 
     def load(self) -> None:
-        """Replace the previous form with that of the current name."""
         if self._form_for:
             self._texts[self._form_for] = self.form.text
         if self._type and self.name_shown != self._form_for:
@@ -170,7 +154,6 @@ class AskPane(GraphPane):
         return self.form.editor
 
     def on_rows_highlighted(self, event: Rows.Highlighted) -> None:
-        """Show the outcome of another request."""
         if event.rows is self.asked_rows:
             event.stop()
             self._show_answer()
@@ -195,4 +178,4 @@ class AskPane(GraphPane):
         if isinstance(tree, tuple):
             echo.show_words(name, *tree)
         else:
-            echo.show(name, tree)
+            echo.show_message(name, tree)

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from textual.app import ComposeResult
 from textual.content import Content
 from textual.widgets import Static
 
+from graph.data import GraphUpdate
+from graph.findings.finding import GraphFinding
 from text import ros2_words
 from text.i18n import _, localized
 from text.plain import plain
-from tui.graph.index import GraphIndex, head_words
+from tui.graph.index import GraphIndex, GraphKind, GraphPlace, head_words
 from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
-from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from graph.findings.finding import GraphFinding
 
 LONGEST = 600
 

@@ -1,27 +1,102 @@
-"""The graph by kind: what is listed, what is wrong with it, how it is searched, and why a list is empty."""
+"""The graph by kind: what is listed, what is wrong with it, how it is searched, and where the user is and was."""
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterable, Mapping
+from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
+from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
 from graph.findings.finding import FindingLevel, GraphFinding
 from graph.findings.rules import LastingFindings
 from graph.housekeeping import is_housekeeping
-from launcher.status import NodeState
+from launcher.status import NodeState, NodeStatus
 from text.i18n import N_, _, localized
 from tui import clock
-from tui.graph.places import LISTED, GraphKind
 from tui.session.bypass import NORMS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from graph.data import ActionRow, GraphUpdate, ServiceRow, TopicRow
-    from launcher.status import NodeStatus
-    from tui.graph.places import GraphPlace
-
     Typed = TopicRow | ServiceRow | ActionRow
+
+
+class GraphKind(str, Enum):
+    """The kind of a place."""
+
+    NODE = "node"
+    SERVICE = "service"
+    ACTION = "action"
+    TYPE = "type"
+    TOPIC = "topic"
+    FINDING = "finding"
+
+
+TITLES = {
+    GraphKind.NODE: N_("Nodes"),
+    GraphKind.SERVICE: N_("Services"),
+    GraphKind.ACTION: N_("Actions"),
+    GraphKind.TYPE: N_("Types"),
+    GraphKind.FINDING: N_("Findings"),
+}
+"""The kinds that the Graph screen itself lists, and the titles of their tabs; topics have their own screen."""
+LISTED = (*TITLES,)
+
+
+class GraphPlace(NamedTuple):
+    """A thing in the graph, by its full name."""
+
+    kind: GraphKind
+    name: str
+
+    def key(self, section: str = "") -> str:
+        """Return the key of a row that links there; `section` tells rows with one target apart."""
+        return f"{section}|{self.kind.value}|{self.name}"
+
+    @classmethod
+    def of_key(cls, key: str) -> GraphPlace | None:
+        _section, _bar, rest = key.partition("|")
+        kind, bar, name = rest.partition("|")
+        return cls(GraphKind(kind), name) if bar and name else None
+
+
+LONGEST = 100
+
+
+class PlaceHistory:
+    """The last chosen place of every kind, and the places from which links were followed."""
+
+    def __init__(self) -> None:
+        self.kind = GraphKind.NODE
+        self.chosen: dict[GraphKind, str] = {}
+        self._been: list[GraphPlace] = []
+
+    @property
+    def here(self) -> GraphPlace | None:
+        name = self.chosen.get(self.kind, "")
+        return GraphPlace(self.kind, name) if name else None
+
+    def choose(self, name: str) -> None:
+        """Choose another place of the same kind, without adding to the history."""
+        self.chosen[self.kind] = name
+
+    def go(self, place: GraphPlace) -> None:
+        here = self.here
+        if here is not None and here != place:
+            self._been = [*self._been, here][-LONGEST:]
+        self.kind, self.chosen[place.kind] = place
+
+    def back(self) -> bool:
+        """Return to where the last link was followed; False if there is none."""
+        if not self._been:
+            return False
+        place = self._been.pop()
+        self.kind, self.chosen[place.kind] = place
+        return True
+
+    def forget(self) -> None:
+        self.chosen.clear()
+        self._been.clear()
+
 
 LOOKS = {FindingLevel.ERROR: ("✗", N_("error"), "bad"), FindingLevel.WARNING: ("▲", N_("warning"), "warn")}
 """Sign, word and meaning (`tui.widgets.rows.Cell`) of a level."""
@@ -44,7 +119,6 @@ _TITLES = {
 
 
 def failures_of(nodes: Iterable[NodeStatus]) -> dict[str, str]:
-    """Return the nodes that have ended for good, by full name, and why."""
     return {f"/{node.name}": node.detail for node in nodes if node.state is NodeState.FAILED}
 
 
@@ -62,9 +136,7 @@ class GraphEntry(NamedTuple):
     """Its type, or for a type the number of its users."""
     housekeeping: bool = False
     label: str = ""
-    """What is listed in place of the name."""
     remark: str = ""
-    """What is listed beside it if there is room."""
     meaning: str = ""
     """Of its colour, as in `tui.widgets.rows.Cell`."""
 
@@ -76,7 +148,6 @@ class GraphIndex:
         self.everything = False
         """Whether what belongs to ROS itself is listed."""
         self.listed: dict[GraphKind, list[GraphEntry]] = {kind: [] for kind in LISTED}
-        """Everything of each kind."""
         self.findings: tuple[GraphFinding, ...] = ()
         """What is wrong with the graph, once it has held for long enough; the worst first."""
         self._lasting = LastingFindings(NORMS)
@@ -102,7 +173,6 @@ class GraphIndex:
         return before != self.findings
 
     def finding(self, key: str) -> GraphFinding | None:
-        """Return the finding with this key, if it still holds."""
         return next((one for one in self.findings if one.key == key), None)
 
     async def find_installed(self) -> None:
@@ -112,7 +182,6 @@ class GraphIndex:
         self._installed = await asyncio.to_thread(interfaces)
 
     def fitting(self, kind: GraphKind, words: str = "") -> list[GraphEntry]:
-        """Return what is listed of a kind for a filter with these words."""
         return chosen_of(self.listed[kind], words, everything=self.everything)
 
     def reveal(self, place: GraphPlace, words: str) -> bool:

@@ -3,36 +3,31 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import App, ComposeResult
+from textual.widget import Widget
 
+from graph.data import GraphUpdate, NodeRow
 from graph.housekeeping import is_housekeeping
+from graph.inner_states import LifecycleRow
 from graph.observer.requests import ChangeState
+from launcher.status import NodeStatus
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.host import host_of
 from tui.graph import parameter_changes
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading, link
 from tui.graph.parameters import GraphParameters
-from tui.graph.places import GraphKind, GraphPlace
 from tui.log_level import change_log_level
 from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
-from tui.widgets.rows import Rows
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from textual.app import App, ComposeResult
-    from textual.widget import Widget
-
-    from graph.data import GraphUpdate, NodeRow
-    from graph.inner_states import LifecycleRow
-    from launcher.status import NodeStatus
-    from tui.widgets.rows import Row
+from tui.widgets.rows import Row, Rows
 
 
 class NodePane(GraphPane):
@@ -58,13 +53,8 @@ class NodePane(GraphPane):
         yield GraphLinks()
         yield GraphParameters()
 
-    @property
-    def links(self) -> GraphLinks:
-        return self.query_one(GraphLinks)
-
-    @property
-    def parameters(self) -> GraphParameters:
-        return self.query_one(GraphParameters)
+    links = getters.query_one(GraphLinks)
+    parameters = getters.query_one(GraphParameters)
 
     @property
     def shows_parameters(self) -> bool:
@@ -80,7 +70,6 @@ class NodePane(GraphPane):
                 self._read()
 
     def toggle_parameters(self) -> None:
-        """Show the parameters, after reading them again, or hide them."""
         self.toggle_class("-parameters")
         if self.shows_parameters:
             self._read()
@@ -94,7 +83,6 @@ class NodePane(GraphPane):
         self.redraw()
 
     def change_lifecycle(self) -> None:
-        """Ask which transition the node is to make."""
         row = lifecycle_of(self.graph_now, self.name_shown)
         if row is not None and row.transitions:
             change_lifecycle(self.app, row)
@@ -156,7 +144,6 @@ class NodePane(GraphPane):
             words.show(_("it talks to nobody"), _("It neither publishes nor subscribes, serves nor calls anything."))
 
     def first(self) -> Widget:
-        """Return the parameters if nothing else is visible, otherwise the links."""
         return self.links if self.links.display else self.parameters.table
 
 
@@ -203,12 +190,10 @@ def node_rows(update: GraphUpdate, node: NodeRow, *, everything: bool) -> list[R
 
 
 def status_of(name: str, nodes: Mapping[str, NodeStatus]) -> NodeStatus | None:
-    """Return the status of the node with this full name, if Deck has started one."""
     return nodes.get(name.removeprefix("/")) or nodes.get(name.rpartition("/")[2])
 
 
 def process_words(status: NodeStatus | None) -> str:
-    """Return which of Deck's processes a node is, and the resources it uses."""
     if status is None:
         return _("not started by Deck")
     sign, word, _meaning = state_words(status)
@@ -231,11 +216,9 @@ MEANINGS = {
     "cleanup": N_("let go of all that configure took"),
     "shutdown": N_("end for good; only a restart brings it back"),
 }
-"""What the transitions of a lifecycle do."""
 
 
 def lifecycle_of(update: GraphUpdate | None, node: str) -> LifecycleRow | None:
-    """Return the lifecycle of the node of this full name, None if it has none."""
     rows = () if update is None else update.lifecycles
     return next((row for row in rows if row.node == node), None)
 

@@ -2,54 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 from textual.containers import Vertical
-from textual.content import Content
-from textual.widgets import Static
+from textual.timer import Timer
+from textual.widget import Widget
 
+from graph.data import GraphUpdate
 from text.i18n import _, localized
 from text.plain import plain
 from tui.frame.host import Host, host_of
-from tui.graph.index import GraphEntry
-from tui.graph.places import GraphKind, GraphPlace
+from tui.graph.index import GraphEntry, GraphKind, GraphPlace
+from tui.session.feed import Feed
+from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from textual.timer import Timer
-    from textual.widget import Widget
-
-    from graph.data import GraphUpdate
-    from tui.session.feed import Feed
-
 LONGEST = 300
-"""Characters of a text that are shown."""
 ROOM_FOR_NAMES = 0.55
 SETTLED_S = 0.12
 """How long a choice must stand before what it needs is loaded: that imports its package."""
 
 
-class EmptyNotice(Static):
+class EmptyNotice(NameHead):
     """A headline and advice, where nothing can be shown."""
 
-    DEFAULT_CSS = """
-    EmptyNotice { width: 1fr; height: auto; padding: 0 1; }
-    """
-
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id, markup=False)
-        self.said = ("", "")
-
-    def show(self, headline: str, way_out: str = "") -> None:
-        """Show these texts with control characters made harmless."""
-        if (headline, way_out) != self.said:
-            self.said = (headline, way_out)
-            parts = [Content.styled(plain(headline, LONGEST), "bold")]
-            parts += [Content.styled(plain(way_out, LONGEST), "$text-muted")] if way_out else []
-            self.update(Content("\n").join(parts))
+    DEFAULT_CSS = "EmptyNotice { max-height: 100%; background: transparent; }"
 
 
 class GraphLinks(Rows):
@@ -76,13 +54,11 @@ def heading(words: str) -> Row:
 
 
 def link(place: GraphPlace, section: str, told: str = "") -> Row:
-    """Return a row that links to a place, with a remark."""
     cells = (Cell(plain(place.name, LONGEST)), Cell(plain(told, LONGEST), "dim"))
     return Row(place.key(section), cells if told else cells[:1])
 
 
 def node_links(names: Iterable[str], section: str, told: str = "") -> list[Row]:
-    """Return rows that link to these nodes."""
     return [link(GraphPlace(GraphKind.NODE, name), section, told) for name in names]
 
 
@@ -92,7 +68,6 @@ class GraphList(Rows):
     def __init__(self) -> None:
         super().__init__(header=False)
         self._listed: tuple[tuple[GraphEntry, bool], ...] = ()
-        """Each entry, and whether it still exists."""
         self._kind = GraphKind.NODE
 
     @property
@@ -100,7 +75,6 @@ class GraphList(Rows):
         return self.chosen.partition("|")[2]
 
     def show_entries(self, kind: GraphKind, shown: Sequence[GraphEntry], chosen: str, words: str) -> None:
-        """Show these entries; `chosen` was chosen last, and `words` are the filter."""
         listed = [(entry, True) for entry in shown]
         missing = chosen and not words and chosen not in {entry.name for entry in shown}
         # A finding that has gone was fixed.
@@ -135,7 +109,6 @@ def ended(words: str, room: int) -> str:
 
 
 def why_empty(feed: Feed, kind: GraphKind, listed: Sequence[GraphEntry], *, all_key: str) -> tuple[str, str]:
-    """Return headline and advice for a list that shows none of `listed`."""
     update = feed.update
     if feed.link is None:
         return _("no lesson is running"), ""
@@ -186,7 +159,6 @@ class GraphPane(Vertical, Working):
         return self.deck.feed.update
 
     def ros2_command(self) -> str:
-        """Return what shows or does the same, as a command line of `ros2`."""
         return ""
 
     def show_name(self, name: str) -> None:
@@ -200,7 +172,6 @@ class GraphPane(Vertical, Working):
 
     @property
     def is_settling(self) -> bool:
-        """Whether something is still to be loaded."""
         return self._settling is not None
 
     def _settle(self) -> None:
@@ -217,9 +188,7 @@ class GraphPane(Vertical, Working):
         self.redraw()
 
     def first(self) -> Widget:
-        """Return the widget to focus when the user enters the detail."""
         return self.query_one(GraphLinks)
 
     def warn(self, words: str) -> None:
-        """Say why something was not done."""
         self.notify(plain(words, LONGEST), severity="warning", markup=False)

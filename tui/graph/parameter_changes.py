@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
 from textual import on
+from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from graph.data import ParameterRow, Value
 from graph.observer.requests import SetParameters
 from text import ros2_words
 from text.i18n import _, localized, ngettext
@@ -24,16 +26,8 @@ from tui.actions import bindings
 from tui.dialogs.dialog import Dialog
 from tui.dialogs.ros2 import copy_dialog_as_ros2
 from tui.frame.host import host_of
-from tui.graph.parameters import allowed_words, meant, typed
+from tui.graph.parameters import GraphParameters, allowed_words, meant, typed
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from textual.app import App, ComposeResult
-
-    from graph.data import ParameterRow, Value
-    from tui.graph.parameters import GraphParameters
 
 LONGEST = 400
 LONGEST_TITLE = 64
@@ -59,11 +53,16 @@ class FieldDialog(Dialog[None]):
     may_change: bool = True
     typing_replaces: ClassVar[bool] = False
 
-    def __init__(self, text: str, take: Take) -> None:
-        """Ask for a text, with `text` as the default."""
+    def __init__(self, title: str, words: str, text: str, take: Take) -> None:
         super().__init__()
-        self._text, self._take = text, take
+        self._title, self._words, self._text, self._take = title, words, text, take
         self._busy = False
+
+    def title_words(self) -> str:
+        return self._title
+
+    def words(self) -> Content:
+        return Content(self._words)
 
     def compose(self) -> ComposeResult:
         with Vertical(id="dialog"):
@@ -115,25 +114,6 @@ class FieldDialog(Dialog[None]):
         remark.display = bool(words)
 
 
-class PathDialog(FieldDialog):
-    """Asks for the path of a file."""
-
-    def __init__(self, title: str, words: str, node: str, take: Take) -> None:
-        """Propose a file called as the node is."""
-        super().__init__(f"{node.strip('/').replace('/', '__')}.yaml", take)
-        self._title, self._words = title, words
-
-    def title_words(self) -> str:
-        return self._title
-
-    def words(self) -> Content:
-        return Content(self._words)
-
-    async def take(self, text: str) -> str:
-        path = text.strip()
-        return await super().take(path) if path else _("Enter a file name.")
-
-
 class ParameterDialog(FieldDialog):
     """Asks for the value of a parameter."""
 
@@ -142,15 +122,13 @@ class ParameterDialog(FieldDialog):
 
     def __init__(self, node: str, row: ParameterRow, apply: Callable[[Value], Awaitable[str]]) -> None:
         """`apply` sets the value; it returns why it was refused, or nothing."""
-        super().__init__(typed(row.value), lambda text: apply(self._value(text)))
+        title = f"{plain(node, LONGEST)} · {plain(row.name, LONGEST)}"
+        super().__init__(title, "", typed(row.value), lambda text: apply(self._value(text)))
         self._node, self._row = node, row
         self.may_change = not row.read_only
 
-    def title_words(self) -> str:
-        return f"{plain(self._node, LONGEST)} · {plain(self._row.name, LONGEST)}"
-
     def words(self) -> Content:
-        row, title = self._row, self.title_words()
+        row, title = self._row, self._title
         lines = [Content.styled(title, "bold")] if cell_len(title) > LONGEST_TITLE else []
         lines += [Content(plain(_(row.description), LONGEST))] if row.description else []
         lines.append(Content.styled(plain(row.type_name), "$text-muted"))
@@ -186,20 +164,26 @@ def edit(app: App[Any], table: GraphParameters) -> None:
 
 
 def save(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a file, and save all parameters to it."""
     if not table.rows:
         app.notify(_("There are no parameters to save."), severity="warning", markup=False)
         return
     words = _("As `ros2 param dump` writes it, and `ros2 run --params-file` reads it.")
-    app.push_screen(PathDialog(_("Save parameters"), words, table.node, partial(_save, app, table, [])))
+    _ask_path(app, table, _("Save parameters"), words, partial(_save, app, table, []))
 
 
 def load(app: App[Any], table: GraphParameters) -> None:
-    """Ask for a file, and set the parameters that it has for this node."""
     if not table.node:
         return
     words = _("A file of `ros2 param dump`. What it has for {node} is set.").format(node=plain(table.node, LONGEST))
-    app.push_screen(PathDialog(_("Load parameters"), words, table.node, partial(_load, app, table)))
+    _ask_path(app, table, _("Load parameters"), words, partial(_load, app, table))
+
+
+def _ask_path(app: App[Any], table: GraphParameters, title: str, words: str, take: Take) -> None:
+    async def take_path(text: str) -> str:
+        return await take(text.strip()) if text.strip() else _("Enter a file name.")
+
+    called = table.node.strip("/").replace("/", "__")
+    app.push_screen(FieldDialog(title, words, f"{called}.yaml", take_path))
 
 
 async def _set(app: App[Any], table: GraphParameters, values: Mapping[str, Value]) -> str:

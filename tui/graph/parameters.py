@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import re
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable
+from concurrent.futures import Future
+from typing import Any, ClassVar
 
+from textual import getters
+from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.widgets import Static
 
+from graph.data import ParameterRow, ParametersResult, Sample, Value
 from graph.observer.requests import ReadParameters
 from text.i18n import N_, _, localized, ngettext
 from text.plain import is_plain, plain
@@ -18,14 +23,6 @@ from tui.frame.host import host_of
 from tui.graph.pane import LONGEST, EmptyNotice
 from tui.widgets.rows import Cell, Column, Row, Rows
 from tui.widgets.working import Working
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from graph.data import ParameterRow, ParametersResult, Sample, Value
 
 ROOMY = 70
 """Cells from which on there are columns for type and limits."""
@@ -65,7 +62,6 @@ def meant(text: str) -> str:
 
 
 def allowed_words(row: ParameterRow) -> str:
-    """Return the range, the step, and whether it can be changed at all."""
     parts, constraints = [], row.constraints
     if row.read_only:
         parts.append(_("read-only"))
@@ -122,9 +118,7 @@ class GraphParameters(Vertical, Working):
     def on_mount(self) -> None:
         self.set_interval(TICK_S, self._label)
 
-    @property
-    def table(self) -> Rows:
-        return self.query_one(Rows)
+    table = getters.query_one(Rows)
 
     @property
     def rows(self) -> tuple[ParameterRow, ...]:

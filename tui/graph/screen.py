@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar, cast
 
-from textual import on
+from textual import getters, on, work
+from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import Horizontal
 from textual.widgets import ContentSwitcher, Input, Static, TextArea
 
+from graph.data import GraphUpdate
 from text.i18n import N_, _
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
@@ -16,23 +18,16 @@ from tui.graph.action import ActionPane
 from tui.graph.actions import GRAPH_ACTIONS, show_everything
 from tui.graph.ask import AskPane
 from tui.graph.finding import FindingPane, goal_of
-from tui.graph.index import LOOKS, GraphIndex, failures_of
+from tui.graph.index import LISTED, LOOKS, TITLES, GraphIndex, GraphKind, GraphPlace, PlaceHistory, failures_of
 from tui.graph.node import NodePane
 from tui.graph.pane import EmptyNotice, GraphList, GraphPane, why_empty
 from tui.graph.parameters import PARAMETER_EVENTS
-from tui.graph.places import LISTED, TITLES, GraphKind, GraphPlace, PlaceHistory
 from tui.graph.service import ServicePane
 from tui.graph.type import TypePane
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
 from tui.widgets.field import Field
 from tui.widgets.rows import Rows
 from tui.widgets.tab_line import TabEntry, TabLine
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged, StatusChanged
-
 
 SETTLE_S = 1.0
 """How often findings are looked at, whether or not anything arrives."""
@@ -108,21 +103,16 @@ class GraphScreen(DeckScreen):
 
     # State
 
-    @property
-    def names(self) -> GraphList:
-        return self.query_one(GraphList)
+    names: getters.query_one[GraphList] = getters.query_one(GraphList)
 
     @property
     def is_typing(self) -> bool:
         return isinstance(self.focused, (Input, TextArea))
 
-    @property
-    def filter(self) -> Input:
-        return self.query_one("#graph-filter", Input)
+    filter = getters.query_one("#graph-filter", Input)
 
     @property
     def pane(self) -> GraphPane | None:
-        """The current detail, None if it does not exist yet."""
         here = self.history.here
         pane = None if here is None else self._panes.get(here.kind)
         return pane if pane is not None and pane.is_mounted else None
@@ -148,12 +138,7 @@ class GraphScreen(DeckScreen):
         pane = self.node_pane
         return pane is not None and pane.shows_parameters and self.shows_pane
 
-    @property
-    def is_in_list(self) -> bool:
-        return self.focused is self.names
-
     def watch_goals(self) -> set[str]:
-        """Return the action that is shown."""
         here = self.history.here
         return {here.name} if here is not None and here.kind is GraphKind.ACTION else set()
 
@@ -219,7 +204,6 @@ class GraphScreen(DeckScreen):
         self.redraw()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show the current graph, and parameters that somebody has changed."""
         self.take(message.update)
         if self.node_pane is not None and self.node_pane.shows_parameters:
             self.node_pane.parameters.hear(message.update.samples.get(PARAMETER_EVENTS, ()))
@@ -232,7 +216,6 @@ class GraphScreen(DeckScreen):
             self.pane.redraw()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Forget the graph of a session that has ended."""
         del message
         self.history.forget()
         self.take(None)
@@ -250,7 +233,6 @@ class GraphScreen(DeckScreen):
             self.refresh_bindings()
 
     def _settle(self) -> None:
-        """Tell findings that have held for long enough, whether or not anything arrives."""
         if self.index.settle():
             self.redraw()
 
@@ -284,7 +266,6 @@ class GraphScreen(DeckScreen):
     # Actions
 
     async def go(self, place: GraphPlace) -> None:
-        """Follow a link: here, or to the Topics screen."""
         if place.kind is GraphKind.TOPIC:
             await self.deck.show_screen("topics")
             cast("Any", self.app.get_screen("topics")).show_topic(place.name)
@@ -330,17 +311,11 @@ class GraphScreen(DeckScreen):
     async def ros2_command(self) -> str:
         return "" if self.pane is None else self.pane.ros2_command()
 
-    def focus_filter(self) -> None:
-        self.set_focus(self.filter)
-
-    def toggle_everything(self) -> None:
-        """Show or hide what belongs to ROS itself."""
+    @work(group="load", exit_on_error=False)
+    async def toggle_everything(self) -> None:
         self.index.everything = not self.index.everything
+        self.redraw()
         if self.index.everything:
             # This reads the directories of all packages.
-            self.run_worker(self._find_installed(), group="load", exit_on_error=False)
-        self.redraw()
-
-    async def _find_installed(self) -> None:
-        await self.index.find_installed()
-        self.take(self.feed.update)
+            await self.index.find_installed()
+            self.take(self.feed.update)

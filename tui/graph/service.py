@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.widgets import Input, Static
 
@@ -20,24 +23,15 @@ from text.plain import plain
 from text.sentences import reason_of
 from tui import clock
 from tui.graph.actions import cancel_request
-from tui.graph.ask import AskPane
+from tui.graph.ask import Answer, AskPane
 from tui.graph.pane import LONGEST
 from tui.graph.parameters import typed
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from tui.graph.ask import Answer
-
 USUAL_S = f"{ANSWER_WITHIN_S:g}"
 LEAST_S, MOST_S = 0.1, 3600.0
 MOST_CALLS = 50
-"""Calls of one service that are kept."""
 TICK_S = 0.5
 """How often the waiting time is updated."""
 
@@ -60,9 +54,7 @@ class CallTimeout(Horizontal):
         yield Static(classes="timeout-unit", markup=False)
         yield Static(classes="timeout-bad", markup=False)
 
-    @property
-    def field(self) -> Field:
-        return self.query_one(Field)
+    field = getters.query_one(Field)
 
     @property
     def seconds(self) -> float | None:
@@ -104,7 +96,6 @@ class ServiceCall:
 
     @property
     def waits(self) -> bool:
-        """Whether its answer is still pending."""
         return self.result is None and not self.given_up
 
     @property
@@ -115,7 +106,6 @@ class ServiceCall:
 
     @property
     def summary(self) -> str:
-        """The request and the answer in one line."""
         asked, result = _flat(self.request), self.result
         if result is None:
             return asked
@@ -138,7 +128,6 @@ class ServicePane(AskPane):
     def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self._calls: dict[str, list[ServiceCall]] = {}
-        """Those of each service, the newest first."""
         self._number = 0
         self._timeouts: dict[str, str] = {}
         """Maps a service to the text in its time-out field."""
@@ -153,9 +142,7 @@ class ServicePane(AskPane):
         if self.can_cancel:
             self.redraw()
 
-    @property
-    def timeout(self) -> CallTimeout:
-        return self.query_one(CallTimeout)
+    timeout = getters.query_one(CallTimeout)
 
     @property
     def calls(self) -> list[ServiceCall]:
@@ -256,7 +243,6 @@ class ServicePane(AskPane):
         return any(call.waits for call in self.calls)
 
     def cancel(self) -> None:
-        """Stop waiting for the newest call."""
         call = next((call for call in self.calls if call.waits), None)
         if call is not None:
             call.given_up = True

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
-from graph.messages.browse import Constant, MessageField, definition
+from textual.app import ComposeResult
+
+from graph.messages.browse import MessageField, definition
 from graph.messages.types import UnknownTypeError
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
+from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading, link
 from tui.graph.parameters import typed
-from tui.graph.places import GraphKind, GraphPlace
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Row
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from textual.app import ComposeResult
 
 WIDEST = 2**63 - 1
 """A bound of this size or more is not informative."""
@@ -73,13 +70,12 @@ class TypePane(GraphPane):
             # Reading a type imports its package and those of its fields, which takes time.
             await asyncio.to_thread(lambda: list(field_rows(name)))
         except UnknownTypeError as error:
-            failure = error.reason
+            failure = error.words
         if name == self.name_shown:
             self._failure, self._loaded = failure, "" if failure else name
             self.redraw()
 
     def _users(self) -> Iterator[Row]:
-        """Yield everything that uses the type, as links."""
         update = self.graph_now
         if update is None:
             return
@@ -119,18 +115,14 @@ def field_rows(type_name: str, at: str = "") -> Iterator[Row]:
             try:
                 yield from field_rows(field.message, path)
             except UnknownTypeError as error:
-                yield heading(f"{indent}  {plain(localized(error.reason), LONGEST)}")
+                yield heading(f"{indent}  {plain(localized(error.words), LONGEST)}")
         for constant in part.constants:
-            yield _constant(constant, indent, f"{at}/{part.name}.{constant.name}")
-
-
-def _constant(constant: Constant, indent: str, path: str) -> Row:
-    value = plain(typed(constant.value), LONGEST)
-    return Row(path, (Cell(indent + plain(constant.name), "dim"), Cell(f"= {value}", "dim")))
+            value = plain(typed(constant.value), LONGEST)
+            cells = Cell(indent + plain(constant.name), "dim"), Cell(f"= {value}", "dim")
+            yield Row(f"{at}/{part.name}.{constant.name}", cells)
 
 
 def _told(field: MessageField) -> str:
-    """Return type, default, and the bounds that the name of the type does not include."""
     told = plain(field.type_name)
     if not field.message:
         default = f'"{field.default}"' if isinstance(field.default, str) else typed(field.default)

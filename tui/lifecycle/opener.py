@@ -7,40 +7,34 @@ takes time. rclpy is imported by the observer's process alone.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import os
-import sys
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import tui
-from launcher.errors import LauncherError
-from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.panels import PANELS, panels_for
 from text.i18n import language
-from text.nested import read_json
-from tui.session.requests import Lesson, Score, Task, WholeGrade
+from tui.screens import is_there
+from tui.session.requests import Lesson
 from tui.session.watching import NodelessLink, watched
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from course.lessons.lesson import LessonFolder
-    from course.progress import Progress
     from graph.replay.replay import Replay
     from launcher.client.client import SupervisorClient
     from launcher.client.start import StartingSupervisor
-    from launcher.profile.catalog import ProfileEntry
     from launcher.profile.load import Profile
     from launcher.status import SessionInfo
     from tui.session.ports import GraphLink, JudgeLink, SessionLink
-    from tui.session.requests import OpenRequest, ReplayRequest
+    from tui.session.requests import OpenRequest, ReplayRequest, WholeGrade
 
 OF_SCREEN = ("tui.deck.screen", "tui.widgets.image_view")
 """Modules that show a lesson, besides its panels."""
 OF_STOP = ("launcher.client.running", "launcher.client.stop_road")
 """Modules of the stop's road to supervisors: whoever presses it does not wait for them."""
+OF_COURSE = "tui.lesson.tasks"
 REPLAY = "replay"
 """Shown in place of the hardware."""
 
@@ -61,7 +55,12 @@ class LiveOpener:
 
     async def scored(self, lessons: Sequence[Lesson]) -> list[Lesson]:
         """Return the same with scores, which takes longer; a lesson without steps has no task."""
-        return await asyncio.to_thread(_scored, lessons)
+        if not is_there("course"):
+            return list(lessons)
+        await _imported(OF_COURSE)
+        from tui.lesson.tasks import scored
+
+        return await asyncio.to_thread(scored, lessons)
 
     async def running(self) -> list[SessionInfo]:
         """Return the sessions that run in the background."""
@@ -130,30 +129,24 @@ class LiveOpener:
 
     async def lesson(self, session: SessionInfo) -> LessonFolder | None:
         """Return the lesson that a running profile belongs to, already read; None without one."""
-        return await asyncio.to_thread(_lesson_of, session)
+        if not is_there("course"):
+            return None
+        await _imported(OF_COURSE)
+        from tui.lesson.tasks import lesson_of
+
+        return await asyncio.to_thread(lesson_of, session)
 
     async def judge(self, lesson: LessonFolder, session: SessionInfo, passed: Iterable[str]) -> JudgeLink:
         """Start a judge, which begins with its first order."""
-        from course.judging import RemoteJudge
+        from tui.lesson.tasks import judge
 
-        return await RemoteJudge.start(lesson.path, session.run_id, passed=passed)
+        return await judge(lesson, session, passed)
 
     async def grade(self, lesson: LessonFolder, folder: Path) -> WholeGrade:
         """Have a learner's folder graded, which takes a while."""
+        from tui.lesson.tasks import graded
+
         return await graded(lesson, folder)
-
-
-def _lesson_of(session: SessionInfo) -> LessonFolder | None:
-    from course.lessons.catalog import lesson_of
-    from launcher.profile.load import load_profile
-
-    try:
-        folder = lesson_of(load_profile(session.profile))
-        # Reading it takes time that a handler of the screen does not have.
-        has_steps = folder is not None and bool(folder.steps)
-    except (LauncherError, OSError):
-        return None
-    return folder if has_steps else None
 
 
 def _read(path: Path, request: OpenRequest) -> Profile:
@@ -200,68 +193,13 @@ async def _imported(*modules: str) -> None:
 
 
 def _lessons() -> list[Lesson]:
-    from course.lessons.catalog import lessons
-    from course.progress import load_progress
+    if is_there("course"):
+        from tui.lesson.tasks import listed
+
+        return listed()
     from launcher.profile.catalog import list_profiles
 
-    tasks, progress = lessons(), load_progress()
-    profiles = list_profiles()
-    names = {entry.name for entry in profiles}
-    # A lesson of a teacher's own has no profile beside it.
-    others = [task.path / FOLDERS_OWN for name, task in tasks.items() if name not in names]
-    return [
-        _lesson(entry, _task(tasks.get(entry.name), progress))
-        for entry in (list_profiles(others) if others else profiles)
-    ]
-
-
-def _task(folder: LessonFolder | None, progress: Progress) -> Task | None:
-    from course.folder.folder import folder_of
-
-    if folder is None:
-        return None
-    own = folder_of(folder) / FOLDERS_OWN
-    return Task(folder=folder.path, own=own if own.is_file() else None, left_off=progress.last == folder.name)
-
-
-def _scored(lessons: Iterable[Lesson]) -> list[Lesson]:
-    from course.progress import load_progress
-
-    progress = load_progress()
-    return [
-        lesson if lesson.task is None else lesson._replace(task=_with_score(lesson.task, progress))
-        for lesson in lessons
-    ]
-
-
-def _with_score(task: Task, progress: Progress) -> Task | None:
-    from course.lessons.lesson import LessonFolder
-    from course.progress import state_of
-
-    folder = LessonFolder(task.folder)
-    try:
-        steps = {step.id for step in folder.steps}
-    except (LauncherError, OSError):
-        return None
-    files = state_of([str(task.own)] if task.own is not None else [])
-    passed = progress.held(folder.name, files) & steps
-    earned = progress.points(folder.name, passed)
-    score = Score(len(steps), folder.points, len(passed), earned)
-    return task._replace(score=score) if steps else None
-
-
-def _lesson(entry: ProfileEntry, task: Task | None) -> Lesson:
-    return Lesson(
-        name=entry.name,
-        path=entry.path,
-        title=entry.title,
-        about=entry.about,
-        lesson=entry.lesson,
-        nodes=entry.nodes,
-        panels=entry.panels,
-        task=task,
-        error=entry.error,
-    )
+    return [Lesson.of(entry) for entry in list_profiles()]
 
 
 def replayed(replay: Replay) -> NodelessLink:
@@ -279,40 +217,3 @@ def replayed(replay: Replay) -> NodelessLink:
         foreground=False,
     )
     return NodelessLink(session)
-
-
-_PASSED = "passed"
-_COULD_NOT = "could not be judged"
-
-
-async def graded(lesson: LessonFolder, folder: Path) -> WholeGrade:
-    """Grade a folder by `deck grade`; whatever goes wrong is said in the result. The session goes on meanwhile."""
-    grading = await asyncio.create_subprocess_exec(
-        *(sys.executable, "-m", "tui", "grade", str(lesson.path), str(folder), "--format", "json"),
-        cwd=Path(tui.__file__).parent.parent,
-        stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.PIPE,
-        env={**os.environ, "DECK_LANG": language()},
-        # Ctrl-C in the terminal is meant for the screen.
-        start_new_session=True,
-    )
-    try:
-        out, errors = await grading.communicate()
-    finally:
-        if grading.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                grading.terminate()
-            await grading.wait()
-    try:
-        return _grade(read_json(out)["grades"][0])
-    except (ValueError, KeyError, IndexError, TypeError):
-        last = errors.decode(errors="replace").strip().splitlines()[-1:]
-        return WholeGrade(0, lesson.points, {}, "".join(last))
-
-
-def _grade(grade: dict[str, Any]) -> WholeGrade:
-    steps = [step for step in grade["steps"] if step["state"] != _PASSED]
-    failed = {step["id"]: step["message"] for step in steps if step["state"] != _COULD_NOT}
-    reason = next((step["message"] for step in steps if step["state"] == _COULD_NOT), "")
-    return WholeGrade(grade["points"], grade["max_points"], failed, reason)

@@ -30,7 +30,6 @@ def _folder(id: str) -> str:
 
 
 def pausing(id: str, when: Condition = always) -> None:
-    """Announce the key that pauses the log."""
 
     @action(
         id,
@@ -44,7 +43,8 @@ def pausing(id: str, when: Condition = always) -> None:
         module=_folder(id),
     )
     def pause(screen: HasLog) -> None:
-        screen.pane.view.toggle_following()
+        view = screen.pane.view
+        (view.pause if view.following else view.follow)()
 
 
 def searching(room: str, when: Condition = always, *, footer: bool = False) -> None:

@@ -1,29 +1,165 @@
-"""Which lines of the ring are shown, on which rows, and which of them are chosen: updated line by line.
+"""The lines that a log view keeps, which of them are shown, on which rows, and which are chosen.
 
 Rows are counted from the first shown line. A line takes one row, or as many as its text needs when
-it is wrapped.
+it is wrapped. When there are too many lines, the nodes that wrote most lose their oldest ones; a flood
+from one node does not push out the lines of others. While somebody reads (`hold`), none of the lines
+present are dropped: instead newer lines are, and a mark takes their place.
 """
 
 from __future__ import annotations
 
 import re
+import sys
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
-from rich.cells import cell_len, chop_cells, get_character_cell_size
+from rich.cells import cell_len, get_character_cell_size
 
-from launcher.status import Severity
-from tui.log_view.ring import LogEntry
+from launcher.status import LogLine, Severity
+from text.i18n import localized
+from text.plain import plain
+from tui.session.past import KEPT_LINES
+
+LONGEST_TEXT = 16_384
+"""Characters kept of one line; the file has the whole line."""
+SLACK = 1.25
+"""Dropping goes through all lines, so it is done only occasionally, for many at once."""
+_OBJECT_BYTES = 130
+
+SAID_BY_DECK = frozenset({"deck", "agent"})
+"""The `source` of lines that can be translated."""
+
+
+@dataclass(slots=True)
+class LogEntry:
+    """A line, or a mark for missing lines."""
+
+    id: int
+    node: str
+    rank: int
+    time_s: float
+    text: str
+    """The text without control characters."""
+    skipped: int = 0
+    """Number of missing lines for a mark; 0 for a line."""
+
+    @property
+    def size(self) -> int:
+        return sys.getsizeof(self.text) + _OBJECT_BYTES
+
+
+class LineRing:
+    """Lines in order of arrival."""
+
+    def __init__(self, max_lines: int = KEPT_LINES, max_bytes: int = 16 * 2**20) -> None:
+        """Keep at most this many lines and bytes, and temporarily a quarter more."""
+        self.max_lines, self.max_bytes = max_lines, max_bytes
+        self.entries: list[LogEntry] = []
+        self.counts: dict[str, list[int]] = {}
+        """Lines received so far, by node and rank of the severity; missing ones do not count."""
+        self._next_id = 0
+        self._held = 0
+        self._bytes = 0
+        self._last_seq: dict[str, int] = {}
+
+    def append(self, lines: Sequence[LogLine], skipped: Mapping[str, int]) -> list[LogEntry]:
+        """Add lines; return them with marks where `seq` or `skipped` shows that any are missing."""
+        start = len(self.entries)
+        seen: Counter[str] = Counter()
+        for line in lines:
+            node, seq = line.node, line.seq
+            last = self._last_seq.get(node)
+            if last is not None and seq > last + 1:
+                seen[node] += seq - last - 1
+                self._add(node, line.time_s, skipped=seq - last - 1)
+            self._last_seq[node] = seq
+            rank = line.severity.rank
+            self.counts.setdefault(node, [0] * len(Severity))[rank] += 1
+            text = localized(line.text) if line.source in SAID_BY_DECK else line.text
+            self._add(node, line.time_s, rank, text)
+        for node, count in skipped.items():
+            missing = count - seen[node]
+            if missing > 0:
+                if node in self._last_seq:
+                    self._last_seq[node] += missing
+                now_s = self.entries[-1].time_s if self.entries else 0.0
+                self._add(node, now_s, skipped=missing)
+        return self.entries[start:]
+
+    def _add(self, node: str, time_s: float, rank: int = 0, text: str = "", skipped: int = 0) -> None:
+        if len(text) > LONGEST_TEXT:
+            text = f"{text[:LONGEST_TEXT]} … (+{len(text) - LONGEST_TEXT})"
+        text = plain(text)
+        self.entries.append(LogEntry(self._next_id, node, rank, time_s, text, skipped))
+        self._next_id += 1
+        self._bytes += self.entries[-1].size
+
+    def clear(self) -> None:
+        self.entries.clear()
+        self.counts.clear()
+        self._last_seq.clear()
+        self._held = self._bytes = 0
+
+    def hold(self) -> None:
+        """Keep all lines that are present now."""
+        self._held = len(self.entries)
+        self._bytes = 0
+
+    def release(self) -> None:
+        """Allow the oldest lines to be dropped again."""
+        self._held = 0
+        self._bytes = sum(entry.size for entry in self.entries)
+
+    @property
+    def full(self) -> bool:
+        """Whether it is time to call `trim`."""
+        loose = len(self.entries) - self._held
+        return loose > self.max_lines * SLACK or self._bytes > self.max_bytes * SLACK
+
+    def trim(self) -> None:
+        """Drop lines of the nodes that wrote most until the limits hold; marks stand for what is held up."""
+        loose = self.entries[self._held :]
+        sizes: Counter[str] = Counter()
+        for entry in loose:
+            sizes[entry.node] += entry.size
+        over_lines = _surplus(Counter(entry.node for entry in loose), self.max_lines)
+        over_bytes = _surplus(sizes, self.max_bytes)
+        gaps: Counter[str] = Counter()
+        kept: list[LogEntry] = []
+        for entry in loose:
+            node = entry.node
+            if over_lines[node] <= 0 and over_bytes[node] <= 0:
+                kept.append(entry)
+                continue
+            over_lines[node] -= 1
+            over_bytes[node] -= entry.size
+            gaps[node] += entry.skipped or 1
+            if self._held and over_lines[node] <= 0 and over_bytes[node] <= 0:
+                kept.append(LogEntry(entry.id, node, 0, entry.time_s, "", gaps[node]))
+        self.entries[self._held :] = kept
+        self._bytes = sum(entry.size for entry in kept)
+
+
+def _surplus(amounts: Mapping[str, int], budget: int) -> Counter[str]:
+    """How much each exceeds its share: the highest level whose sum of min(amount, level) stays within the budget."""
+    level, rest = sys.maxsize, sorted(amounts.values())
+    while rest:
+        share = budget // len(rest)
+        if rest[0] > share:
+            level = share
+            break
+        budget -= rest.pop(0)
+    return Counter({name: amount - level for name, amount in amounts.items() if amount > level})
+
 
 _id_of = attrgetter("id")
 
 
 _narrow = re.compile("[ -~\xa0-\xac\xae-\u02ff\u0370-\u0482\u048a-\u052f\u2010-\u2027\u2400-\u2421]*").fullmatch
 """Matches texts in which every character takes one cell."""
-_JOINER = "\u200d"
-"""Joins two emoji into one."""
 _EMOJI_STYLE = "\ufe0f"
 """Makes the character before it a wide emoji."""
 
@@ -35,12 +171,7 @@ def folded(text: str, width: int) -> list[str]:
     characters are cut between any two characters.
     """
     if not _narrow(text):
-        chopped = chop_cells(text, width) or [""]
-        # `chop_cells` drops trailing characters without width.
-        chopped[-1] += text[sum(map(len, chopped)) :]
-        if _JOINER in text and any(cell_len(row) > width for row in chopped):
-            return _cut_by_character(text, width)
-        return chopped
+        return _cut_by_character(text, width)
     pieces: list[str] = []
     at, end = 0, len(text)
     while end - at > width:
@@ -53,10 +184,7 @@ def folded(text: str, width: int) -> list[str]:
 
 
 def _cut_by_character(text: str, width: int) -> list[str]:
-    """Return rows of a text in which Rich counts a character beside a joiner as nothing.
-
-    Each character has its own width here, as if none were joined, so a row is never too wide.
-    """
+    """Return rows that are never too wide: each character has its own width, as if none were joined."""
     rows: list[str] = []
     start = used = 0
     for at, character in enumerate(text):
@@ -70,7 +198,7 @@ def _cut_by_character(text: str, width: int) -> list[str]:
 
 def folded_rows(text: str, width: int) -> int:
     """Return the number of rows that `folded` makes, without making them where possible."""
-    if len(text) <= width and (text.isascii() or (_JOINER not in text and cell_len(text) <= width)):
+    if len(text) <= width and _narrow(text):
         return 1
     return len(folded(text, width))
 
@@ -90,14 +218,12 @@ class LogFilter:
     """Whether lines without that text are hidden."""
 
     def shows_node(self, node: str) -> bool:
-        """Whether lines of this node are shown at all."""
         if self.only is not None:
             return node == self.only
         return node not in self.muted
 
     @property
     def pattern(self) -> re.Pattern[str] | None:
-        """The pattern for the search text; None if there is none."""
         return re.compile(re.escape(self.search), re.IGNORECASE) if self.search else None
 
     def toggled(self, node: str) -> LogFilter:
@@ -121,7 +247,6 @@ class LogIndex:
     """The shown lines in order, the rows that they take, and the matches of a search."""
 
     def __init__(self, text_of: Callable[[LogEntry], str]) -> None:
-        """Pass `text_of`, which returns the text that is drawn for an entry."""
         self.text_of = text_of
         self.filter = LogFilter()
         self.fold_width: int | None = None
@@ -135,7 +260,6 @@ class LogIndex:
 
     @property
     def rows(self) -> int:
-        """Number of rows that all shown lines take."""
         if self.fold_width is None:
             return len(self.shown)
         return self._ends[-1] if self._ends else 0
@@ -171,12 +295,10 @@ class LogIndex:
             ends.append(end)
 
     def rebuild(self, entries: Sequence[LogEntry]) -> None:
-        """Rebuild from all entries, because the filter or the ring has changed."""
         self.shown, self.found, self._ends, self.longest = [], [], [], 0
         self.extend(entries)
 
     def fold(self, width: int | None) -> None:
-        """Wrap the lines to this width, or not at all."""
         self.fold_width, self._ends, self.longest = width, [], 0
         self._measure(self.shown)
 
@@ -188,7 +310,6 @@ class LogIndex:
         return place, row - self.row_of(place)
 
     def row_of(self, place: int) -> int:
-        """First row of the line at this index in `shown`."""
         if self.fold_width is None or place == 0:
             return place
         return self._ends[place - 1]
@@ -213,7 +334,6 @@ class LineChoice:
     def __init__(self, index: LogIndex) -> None:
         self.cursor: int | None = None
         self._anchor: int | None = None
-        """Where the choice began."""
         self._index = index
 
     def move(self, entry_id: int, *, extend: bool) -> None:
@@ -227,7 +347,6 @@ class LineChoice:
 
     @property
     def _span(self) -> tuple[int, int]:
-        """Lowest and highest chosen id."""
         if self.cursor is None or self._anchor is None:
             return 0, -1
         return min(self.cursor, self._anchor), max(self.cursor, self._anchor)
@@ -243,7 +362,6 @@ class LineChoice:
 
     @property
     def node(self) -> str | None:
-        """Node of the line at the cursor, None without a cursor."""
         return next((entry.node for entry in self.entries if entry.id == self.cursor), None)
 
     @property

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from rich.cells import cell_len
 from textual import on
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
@@ -26,15 +27,10 @@ from text.i18n import _, localized, ngettext
 from text.os_words import os_reason
 from text.plain import plain
 from tui import clock
-from tui.log_view.rows import grouped
+from tui.log_view.rows import exported, grouped
 from tui.log_view.view import LogView
 from tui.widgets.field import Field
 from tui.widgets.working import Working
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from textual.app import ComposeResult
 
 CLIPBOARD_LIMIT = 100_000
 """Bytes; many terminals silently drop a longer OSC 52 sequence."""
@@ -63,7 +59,6 @@ class LogPrompt(Horizontal):
         yield Static(id="remark", markup=False)
 
     def ask(self, kind: str, label: str, text: str) -> None:
-        """Ask, with `text` as the default answer."""
         self.kind = kind
         self.add_class("-asking")
         self.query_one("#label", Static).update(label)
@@ -75,7 +70,6 @@ class LogPrompt(Horizontal):
         self.screen.set_focus(field)
 
     def remark(self, words: str) -> None:
-        """Show a remark about the answer."""
         self.query_one("#remark", Static).update(words)
 
     def close(self) -> None:
@@ -101,8 +95,8 @@ class LogBar(Widget):
     }
     """
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._parts: tuple[tuple[str, str], ...] = ()
 
     def show(self, view: LogView) -> None:
@@ -113,7 +107,6 @@ class LogBar(Widget):
 
     @property
     def words(self) -> str:
-        """The full text, the most important parts first."""
         return " · ".join(text for text, _style in self._parts)
 
     def render(self) -> Content:
@@ -205,26 +198,23 @@ class LogPane(Vertical, Working):
         self._show_state()
 
     def search(self) -> None:
-        """Ask what to search for; the search runs as the text is typed."""
         self.prompt.ask("search", _("search:"), self.view.log_filter.search)
 
     def find(self, step: int) -> None:
-        """Go to the next (1) or previous (-1) match."""
         if not self.view.log_filter.search:
             self.search()
         elif not self.view.find(step):
             self.app.bell()
 
     def copy(self) -> None:
-        """Copy the chosen lines to the clipboard of the terminal."""
-        lines = self.view.chosen_lines()
+        lines = exported(self.view.choice.entries, self.view.index)
         if lines:
             self._copy(lines)
         else:
             self.notify(_("Choose lines first: with up and down, several with Shift."))
 
     def copy_all(self) -> None:
-        self._copy(self.view.shown_lines())
+        self._copy(exported(self.view.index.shown, self.view.index))
 
     def _copy(self, lines: Sequence[str]) -> None:
         text = "\n".join(lines)
@@ -237,8 +227,8 @@ class LogPane(Vertical, Working):
 
     def save(self) -> None:
         """Ask for a file to save to: the chosen lines if there are several, otherwise all shown."""
-        chosen = self.view.chosen_lines()
-        self._lines = chosen if len(chosen) > 1 else self.view.shown_lines()
+        chosen = exported(self.view.choice.entries, self.view.index)
+        self._lines = chosen if len(chosen) > 1 else exported(self.view.index.shown, self.view.index)
         self._refused = None
         count = ngettext("write {count} line to:", "write {count} lines to:", len(self._lines))
         when = datetime.fromtimestamp(clock.now(), timezone.utc).astimezone()
@@ -264,7 +254,6 @@ class LogPane(Vertical, Working):
             self.prompt.remark(_("Enter a file name."))
 
     def action_give_up(self) -> None:
-        """Ask no more; a search ends."""
         if self.prompt.kind == "search":
             self._search_for("")
         self._close_prompt()

@@ -11,23 +11,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from rich.cells import cell_len, set_cell_size
 from rich.style import Style
 from rich.text import Text
+from textual.cache import LRUCache
 from textual.color import Color
+from textual.selection import Selection
 from textual.strip import Strip
+from textual.widget import Widget
 
 from launcher.status import Severity
 from text.i18n import ngettext
 from text.plain import plain
-from tui.log_view.index import LogIndex, folded
-from tui.log_view.ring import LogEntry
-
-if TYPE_CHECKING:
-    from textual.selection import Selection
-    from textual.widget import Widget
+from tui.log_view.index import LogEntry, LogIndex, folded
 
 WORDS = tuple(severity.name for severity in Severity)
 WORD_CELLS = max(map(len, WORDS))
@@ -46,7 +43,6 @@ class LogColumns:
 
     @property
     def gutter(self) -> int:
-        """Cells in front of the text: the mark of the line, and a blank after each column."""
         return 1 + sum(cells + 1 for cells in (self.time, self.word, self.node) if cells)
 
 
@@ -55,7 +51,7 @@ def columns_for(width: int, longest_node: int) -> LogColumns:
     if width < 40:
         return LogColumns(0, 1, min(longest_node, 6))
     if width < 70:
-        return LogColumns(8, 1, min(longest_node, 10))
+        return LogColumns(8, 1, min(longest_node, width // 4))
     if width < 140:
         return LogColumns(8, WORD_CELLS, min(longest_node, 20))
     return LogColumns(12, WORD_CELLS, min(longest_node, 32))
@@ -104,10 +100,17 @@ def gutter_texts(entry: LogEntry, columns: LogColumns) -> tuple[str, str, str]:
     when = f" {clock(entry.time_s, columns.time)} " if columns.time else " "
     word = "⋯" if entry.skipped else WORDS[entry.rank]
     word = f"{word[: columns.word].ljust(columns.word)} " if columns.word else ""
-    name, cells = plain(entry.node), columns.node
-    if cell_len(name) > cells > 1:
-        name = set_cell_size(name, cells - 1) + "…"
-    return when, word, f"{set_cell_size(name, cells)} " if cells else ""
+    cells = columns.node
+    return when, word, f"{set_cell_size(short_name(entry.node, cells), cells)} " if cells else ""
+
+
+def short_name(node: str, cells: int) -> str:
+    """Cut a name in its middle: names of one robot often differ only at their end."""
+    name = plain(node)
+    if cell_len(name) <= cells or cells < 2:
+        return name
+    end = (cells - 1) // 3
+    return set_cell_size(name, cells - 1 - end) + "…" + name[len(name) - end :]
 
 
 def exported(entries: Sequence[LogEntry], index: LogIndex) -> list[str]:
@@ -123,6 +126,20 @@ def exported(entries: Sequence[LogEntry], index: LogIndex) -> list[str]:
     return lines
 
 
+def selected(selection: Selection, index: LogIndex, columns: LogColumns) -> tuple[str, str] | None:
+    """The text selected with the mouse: what the rows show, with wrapped lines joined."""
+    ids = [index.shown[0].id, index.shown[-1].id] if index.shown else [0, -1]
+    first = ids[0] if selection.start is None else selection.start.y
+    last = ids[1] if selection.end is None else selection.end.y
+    lines = []
+    for entry in index.shown[index.place_of(first) : index.place_of(last + 1)]:
+        span = selection.get_span(entry.id)
+        if span is not None:
+            text = "".join(gutter_texts(entry, columns)) + index.text_of(entry)
+            lines.append(text[span[0] : len(text) if span[1] < 0 else span[1]])
+    return ("\n".join(lines), "\n") if lines else None
+
+
 PALETTE_CLASSES = {f"log--{part}" for part in ("muted", "marker", "found", "cursor", *map(str.lower, WORDS))}
 PALETTE_CSS = """
     .log--muted { color: $foreground 60%; }
@@ -135,6 +152,10 @@ PALETTE_CSS = """
     .log--error { color: $text-error; text-style: bold; }
     .log--fatal { background: $error; color: auto 90%; text-style: bold; }
 """
+
+
+PAGES_KEPT = 2
+"""Drawn rows that are kept, in heights of the view: a row takes two kilobytes."""
 
 
 class RowPainter:
@@ -160,6 +181,19 @@ class RowPainter:
         lightness = 0.72 if widget.app.current_theme.dark else 0.34
         hues = (Color.from_hsl(hue / 360, 0.55, lightness).rich_color for hue in _HUES)
         self._nodes = tuple(self._base + Style(color=hue) for hue in hues)
+
+        self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(max(1, PAGES_KEPT * widget.container_size.height))
+        self._across = widget.size.width
+
+    def strip(self, entry: LogEntry, part: int, place: int, selection: Selection | None, *, chosen: bool) -> Strip:
+        """One row in the width of the widget, drawn anew only while text is selected."""
+        strip = None if selection else self._strips.get((entry.id, part))
+        if strip is None:
+            strip = self.row(entry, part, place, selection, chosen=chosen)
+            strip = strip.adjust_cell_length(self._across, self._base)
+            if selection is None:
+                self._strips[entry.id, part] = strip
+        return strip
 
     def row(self, entry: LogEntry, part: int, place: int, selection: Selection | None, *, chosen: bool) -> Strip:
         """Row number `part` of an entry, whose node has this `place` among the colours."""

@@ -8,49 +8,31 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias
 
 from rich.cells import cell_len
 from rich.segment import Segment
 from textual.binding import Binding, BindingType
-from textual.cache import LRUCache
+from textual.events import Click, Resize
+from textual.geometry import Size
 from textual.message import Message
 from textual.scroll_view import ScrollView
+from textual.selection import Selection
 from textual.strip import Strip
+from textual.widget import Widget
 
+from launcher.status import LogLine
 from text.i18n import _
 from text.plain import plain
-from tui.log_view.index import LineChoice, LogIndex
-from tui.log_view.ring import LineRing
-from tui.log_view.rows import (
-    PALETTE_CLASSES,
-    PALETTE_CSS,
-    LogColumns,
-    RowPainter,
-    columns_for,
-    exported,
-    gutter_texts,
-    text_of,
-)
-from tui.log_view.tail import Tail
+from tui.log_view.index import LineChoice, LineRing, LogFilter, LogIndex
+from tui.log_view.rows import PALETTE_CLASSES, PALETTE_CSS, LogColumns, RowPainter, columns_for, selected, text_of
 from tui.session.past import KEPT_LINES
-from tui.widgets.one_style import OneStyle
-
-if TYPE_CHECKING:
-    from textual.events import Click, Resize
-    from textual.selection import Selection
-    from textual.widget import Widget
-
-    from launcher.status import LogLine
-    from tui.log_view.index import LogFilter
-    from tui.log_view.ring import LogEntry
+from tui.widgets.words import OneStyle
 
 ColumnsFor: TypeAlias = "Callable[[int, int], LogColumns]"
 """Returns the columns in front of the text, for the given widths of a row and the longest node."""
 SHIFT_CELLS = 16
 LEAST_TEXT = 8
-PAGES_KEPT = 2
-"""Drawn rows that are kept, in heights of the view: a row takes two kilobytes."""
 
 
 class LogView(OneStyle, ScrollView, can_focus=True):
@@ -90,10 +72,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             super().__init__()
             self.view = view
 
-        @property
-        def control(self) -> Widget:
-            return self.view
-
         def can_replace(self, message: Message) -> bool:
             """Of several, only the newest is needed."""
             return isinstance(message, LogView.StateChanged) and message.view is self.view
@@ -121,7 +99,12 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.minimum_words = ""
         """How the bar describes the lowest severity shown, in place of "WARN and worse"."""
         self.choice = LineChoice(self.index)
-        self._tail = Tail(self, lambda: self.index.rows, self._tell, period_s)
+        self.following = True
+        """Whether the newest line is kept in sight."""
+        self._steering = False
+        """Whether the view itself is scrolling, rather than the user."""
+        self._period_s, self._waiting = period_s, False
+        self._thumb = (-1, -1)
         self.fold = fold
         """Whether long lines are wrapped; set it by `set_fold`."""
         self._shifted = 0
@@ -130,7 +113,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._node_places: dict[str, int] = {}
         self._longest_node = 4
         self._painter: RowPainter | None = None
-        self._strips: LRUCache[tuple[int, int], Strip] = LRUCache(1)
 
     # Display
 
@@ -143,10 +125,9 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         if self.ring.full:
             self.ring.trim()
             self.index.rebuild(self.ring.entries)
-        self._tail.rows_came()
+        self._rows_came()
 
     def know_nodes(self, names: Iterable[str]) -> None:
-        """Assign colours to these nodes, in this order."""
         for name in names:
             self._node_places.setdefault(name, len(self._node_places))
         longest = max(map(len, self._node_places), default=0)
@@ -180,7 +161,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self._settle(top)
 
     def set_fold(self, fold: bool) -> None:
-        """Wrap long lines, or show one row of each and shift it sideways."""
         if fold != self.fold:
             self.fold, self._shifted = fold, 0
             self.lay_out()
@@ -191,11 +171,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
 
     # Following
 
-    @property
-    def following(self) -> bool:
-        """Whether the newest line is kept in sight."""
-        return self._tail.following
-
     def follow(self) -> None:
         """Keep the newest line in sight from now on, with no line chosen."""
         if self.choice.cursor is not None:
@@ -203,39 +178,33 @@ class LogView(OneStyle, ScrollView, can_focus=True):
             self._repaint()
         self.fresh = 0
         self.ring.release()
-        self._tail.following = True
-        self._tail.redraw()
+        self.following = True
+        self._redraw()
 
     def pause(self) -> None:
         """Pause: keep all lines that are present now while others arrive."""
         if self.following:
             self.fresh = 0
             self.ring.hold()
-            self._tail.following = False
+            self.following = False
             self._tell()
-
-    def toggle_following(self) -> None:
-        if self.following:
-            self.pause()
-        else:
-            self.follow()
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
         """Pause when scrolled away from the end; follow when scrolled back to it."""
-        if self._tail.steering:
+        if self._steering:
             return
         super().watch_scroll_y(old_value, new_value)
-        self._tail.sync_scrollbar()
+        self._sync_scrollbar()
         if new_value < self.max_scroll_y:
             self.pause()
         elif new_value > old_value and not self.following:
             self.follow()
 
     def action_page_up(self) -> None:
-        self.scroll_to(y=self.scroll_y - self._tail.page_rows, animate=False)
+        self.scroll_to(y=self.scroll_y - self._page_rows, animate=False)
 
     def action_page_down(self) -> None:
-        self.scroll_to(y=self.scroll_y + self._tail.page_rows, animate=False)
+        self.scroll_to(y=self.scroll_y + self._page_rows, animate=False)
 
     def action_scroll_home(self) -> None:
         self.scroll_to(y=0, animate=False)
@@ -246,26 +215,17 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     # Choosing and searching
 
     def find(self, step: int) -> bool:
-        """Choose the next (1) or previous (-1) line that contains the search text."""
         shown = self.index.shown
         if not shown:
             return False
         start = self.choice.cursor
         if start is None:
-            start = shown[self._place_on_row(0 if step > 0 else self._tail.page_rows - 1)].id - step
+            start = shown[self._place_on_row(0 if step > 0 else self._page_rows - 1)].id - step
         found = self.index.found_near(start, step)
         if found is None:
             return False
         self._point_at(self.index.place_of(found))
         return True
-
-    def chosen_lines(self) -> list[str]:
-        """The chosen lines, as text with date, severity and node."""
-        return exported(self.choice.entries, self.index)
-
-    def shown_lines(self) -> list[str]:
-        """All lines that pass the filter, in the same form."""
-        return exported(self.index.shown, self.index)
 
     def action_scroll_up(self) -> None:
         self._step(-1, extend=False)
@@ -274,7 +234,6 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._step(1, extend=False)
 
     def action_choose(self, step: int) -> None:
-        """Extend the choice by one line, upwards (-1) or downwards (1)."""
         self._step(step, extend=True)
 
     def action_let_go(self) -> None:
@@ -289,36 +248,23 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self._shift(SHIFT_CELLS)
 
     def on_click(self, event: Click) -> None:
-        """Choose the clicked line; with Shift, all lines up to it."""
         row = int(self.scroll_y) + event.y
         if self.text_selection is None and row < self.index.rows:
             self._point_at(self.index.locate(row)[0], extend=event.shift)
 
     def selection_updated(self, selection: Selection | None) -> None:
-        """Pause while text is selected with the mouse."""
         if selection is not None:
             self.pause()
         self.refresh()
 
     def get_selection(self, selection: Selection) -> tuple[str, str] | None:
-        """The text selected with the mouse: what the rows show, with wrapped lines joined."""
-        ids = [self.index.shown[0].id, self.index.shown[-1].id] if self.index.shown else [0, -1]
-        first = ids[0] if selection.start is None else selection.start.y
-        last = ids[1] if selection.end is None else selection.end.y
-        start, end = self.index.place_of(first), self.index.place_of(last + 1)
-        lines = []
-        for entry in self.index.shown[start:end]:
-            span = selection.get_span(entry.id)
-            if span is not None:
-                text = "".join(gutter_texts(entry, self._columns)) + self.index.text_of(entry)
-                lines.append(text[span[0] : len(text) if span[1] < 0 else span[1]])
-        return ("\n".join(lines), "\n") if lines else None
+        return selected(selection, self.index, self._columns)
 
     def _step(self, step: int, *, extend: bool) -> None:
         if self.choice.cursor is not None:
             place = self.index.place_of(self.choice.cursor) + step
         else:
-            place = self._place_on_row(self._tail.page_rows - 1)
+            place = self._place_on_row(self._page_rows - 1)
         self._point_at(place, extend=extend)
 
     def _place_on_row(self, y: int) -> int:
@@ -333,7 +279,12 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.pause()
         place = max(0, min(place, len(shown) - 1))
         self.choice.move(shown[place].id, extend=extend)
-        self._tail.show(self.index.row_of(place), self.index.row_of(place + 1))
+        first, end = self.index.row_of(place), self.index.row_of(place + 1)
+        if first < self.scroll_y or end - first > self._page_rows:
+            self._steer(first)
+        elif end > self.scroll_y + self._page_rows:
+            self._steer(end - self._page_rows)
+        self._sync_scrollbar()
         self._repaint()
         self._tell()
 
@@ -347,20 +298,63 @@ class LogView(OneStyle, ScrollView, can_focus=True):
     def _tell(self) -> None:
         self.post_message(self.StateChanged(self))
 
-    # Drawing
+    # Drawing. Growing needs no layout: the scrollbar is always there, and it is redrawn only when its thumb would
+    # look different.
+
+    @property
+    def _page_rows(self) -> int:
+        return self.container_size.height
+
+    def _rows_came(self) -> None:
+        """Draw soon, together with rows that arrive until then; draw the first rows at once."""
+        if self._waiting:
+            return
+        if self._period_s and self.is_running and self.virtual_size.height:
+            self._waiting = True
+            self.set_timer(self._period_s, self._draw_those_that_came)
+        else:
+            self._draw_those_that_came()
+
+    def _draw_those_that_came(self) -> None:
+        self._waiting = False
+        self._redraw(only_end=not self.following and self.index.rows >= self.virtual_size.height)
+
+    def _redraw(self, *, only_end: bool = False) -> None:
+        had = self.virtual_size.height
+        # Set without the reactive: its watcher would lay out the whole screen for each batch.
+        self.set_reactive(Widget.virtual_size, Size(self.container_size.width, self.index.rows))
+        self._steer(self.max_scroll_y if self.following else int(self.scroll_y))
+        if not only_end or had < self.scroll_y + self._page_rows:
+            self.refresh()
+        self._sync_scrollbar()
+        self._tell()
+
+    def _steer(self, row: int) -> None:
+        """Put this row at the top without treating it as the user's scrolling; does not draw."""
+        self._steering = True
+        self.scroll_target_y = self.scroll_y = row
+        self._steering = False
+
+    def _sync_scrollbar(self) -> None:
+        """Update the thumb if it would differ by an eighth of a cell."""
+        if not self.show_vertical_scrollbar:
+            return
+        total, page = max(1, self.index.rows), self._page_rows
+        thumb = (round(8 * page * self.scroll_y / total), round(8 * page * page / total))
+        if thumb != self._thumb:
+            self._thumb, bar = thumb, self.vertical_scrollbar
+            bar.window_virtual_size, bar.window_size = total, page
+            bar.position = self.scroll_y
 
     @property
     def top_id(self) -> int | None:
-        """Id of the line at the top of the screen."""
         place = self.index.locate(int(self.scroll_y))[0]
         return self.index.shown[place].id if place < len(self.index.shown) else None
 
     def lay_out(self) -> None:
-        """Fit columns and wrapping to the size and the language."""
         width = self.container_size.width - self.scrollbar_size_vertical
         if width >= 1:
             top = self.top_id
-            self._strips.maxsize = max(1, PAGES_KEPT * self.container_size.height)
             self._columns = self._columns_for(width, self._longest_node)
             self.index.fold(self._text_width if self.fold else None)
             self._settle(top)
@@ -374,49 +368,31 @@ class LogView(OneStyle, ScrollView, can_focus=True):
         self.lay_out()
 
     def notify_style_update(self) -> None:
-        """Use the colours of the new theme."""
         super().notify_style_update()
-        self._forget()
+        self._painter = None
 
     def _settle(self, top: int | None) -> None:
         """After rows have changed, keep the same line at the top, or follow the end."""
         self._repaint()
         if not self.following and top is not None:
-            self._tail.steer(self.index.row_of(self.index.place_of(top)))
-        self._tail.redraw()
-
-    def _forget(self) -> None:
-        """Discard all drawn rows, since they look different now."""
-        self._painter = None
-        self._strips.clear()
+            self._steer(self.index.row_of(self.index.place_of(top)))
+        self._redraw()
 
     def _repaint(self) -> None:
-        self._forget()
+        self._painter = None
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """One row, or words if there are no lines."""
         row = int(self.scroll_y) + y
         if row < self.index.rows:
+            if self._painter is None:
+                self._painter = RowPainter(self, self.index, self._columns, self._text_width, self._shifted)
             place, part = self.index.locate(row)
-            return self._row(self.index.shown[place], part)
+            entry = self.index.shown[place]
+            chosen = entry.id in self.choice
+            return self._painter.strip(entry, part, self._node_places[entry.node], self.text_selection, chosen=chosen)
         strip = Strip([]) if self.index.rows else self._words_line(y)
         return strip.adjust_cell_length(self.size.width, self.rich_style)
-
-    def _row(self, entry: LogEntry, part: int) -> Strip:
-        """Row number `part` of a line."""
-        selection = self.text_selection
-        strip = None if selection else self._strips.get((entry.id, part))
-        if strip is not None:
-            return strip
-        if self._painter is None:
-            self._painter = RowPainter(self, self.index, self._columns, self._text_width, self._shifted)
-        place, chosen = self._node_places[entry.node], entry.id in self.choice
-        strip = self._painter.row(entry, part, place, selection, chosen=chosen)
-        strip = strip.adjust_cell_length(self.size.width, self.rich_style)
-        if selection is None:
-            self._strips[entry.id, part] = strip
-        return strip
 
     def _words_line(self, y: int) -> Strip:
         words = self.empty_words or _("no lines yet")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from launcher.status import Severity
 from text.i18n import N_
 from tui.actions.action import Announce, actions_of
 from tui.log_view.actions import folding, pausing, searching, taking
@@ -96,11 +97,10 @@ def hear_one_in_log(screen: LogsScreen) -> None:
     anywhere=True,
 )
 def hear_all_in_log(screen: LogsScreen) -> None:
-    screen.hear_all()
+    screen.choose(replace(screen.pane.view.log_filter.all_nodes(), minimum=Severity.DEBUG))
 
 
 def _may_ask_node(screen: LogsScreen) -> bool | None:
-    """Only with a node that can be asked."""
     if screen.feed.replay is not None:
         return False
     return True if screen.chosen_node else None
@@ -114,7 +114,10 @@ def _may_ask_node(screen: LogsScreen) -> bool | None:
     when=_may_ask_node,
 )
 def change_level_in_log(screen: LogsScreen) -> None:
-    screen.change_level()
+    from tui.log_level import change_log_level, full_name
+
+    if screen.chosen_node:
+        screen.run_worker(change_log_level(screen.app, full_name(screen.feed.update, screen.chosen_node)))
 
 
 folding("logs")

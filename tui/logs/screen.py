@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
 from time import monotonic
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 
@@ -16,19 +17,12 @@ from text.i18n import N_, _, decimal
 from text.plain import plain
 from tui.actions import bindings
 from tui.frame.screen import DeckScreen
-from tui.log_level import change_log_level, full_name
+from tui.log_view.index import LogFilter
 from tui.log_view.pane import LogPane
 from tui.log_view.view import LogView
 from tui.logs.actions import LOGS_ACTIONS
+from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
 from tui.widgets.rows import Cell, Column, Row, Rows
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from textual.app import ComposeResult
-
-    from tui.log_view.index import LogFilter
-    from tui.session.messages import LanguageChanged, LogArrived, SessionChanged, StatusChanged
 
 COUNTS_EVERY_S = 0.5
 HEARD, MUTE, ALONE = "●", "○", "★"
@@ -45,7 +39,6 @@ class LogNodes(Rows):
     """
 
     def show_nodes(self, names: Iterable[str], counts: Mapping[str, Sequence[int]], chosen: LogFilter) -> None:
-        """Show these nodes; `counts` has the lines of each by rank of the severity."""
         columns = (
             Column("", 1),
             Column(_("node")),
@@ -121,13 +114,8 @@ class LogsScreen(DeckScreen):
             yield LogNodes()
             yield LogPane(LogView(file_of=self.feed.log_file))
 
-    @property
-    def pane(self) -> LogPane:
-        return self.query_one(LogPane)
-
-    @property
-    def node_list(self) -> LogNodes:
-        return self.query_one(LogNodes)
+    pane: getters.query_one[LogPane] = getters.query_one(LogPane)
+    node_list = getters.query_one(LogNodes)
 
     @property
     def chosen_node(self) -> str | None:
@@ -154,7 +142,6 @@ class LogsScreen(DeckScreen):
         self._show_nodes()
 
     def on_log_arrived(self, message: LogArrived) -> None:
-        """Add the lines; the counts of the nodes are updated less often."""
         self.pane.view.append(message.lines, message.skipped)
         if monotonic() - self._counted_s > COUNTS_EVERY_S:
             self._counted_s = monotonic()
@@ -184,15 +171,6 @@ class LogsScreen(DeckScreen):
     def choose(self, chosen: LogFilter) -> None:
         self.pane.view.log_filter = chosen
         self._show_nodes()
-
-    def hear_all(self) -> None:
-        heard = self.pane.view.log_filter.all_nodes()
-        self.choose(replace(heard, minimum=Severity.DEBUG))
-
-    def change_level(self) -> None:
-        name = self.chosen_node
-        if name:
-            self.run_worker(change_log_level(self.app, full_name(self.feed.update, name)))
 
     def toggle_nodes(self) -> None:
         if self.node_list.has_focus:

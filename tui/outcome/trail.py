@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robot.joints import HEAD_PAN, HEAD_TILT
-from robot.topics import DRIVE, DRIVE_SAFE, HEAD_STATE, LLM_RAW_JSON, LLM_RESULT, SAFETY_STATE, WHEEL_COMMANDS
+from robot.topics import DRIVE, DRIVE_SAFE, HEAD_STATE, LLM_RAW_JSON, LLM_RESULT, WHEEL_COMMANDS
+from safety.topics import SAFETY_STATE
 from text.i18n import _, ngettext
 from text.plain import plain
 from tui.emergency.state import blocked_reason

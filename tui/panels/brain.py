@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from textual.app import ComposeResult
 
+from graph.data import GraphUpdate
 from robot.topics import BRAIN_STATE
 from text.i18n import N_
 from tui.log_view.index import folded
-from tui.outcome.model_usage import brain_reports, budget_words, usage_words
+from tui.outcome.model_usage import BrainReport, brain_reports, budget_words, usage_words
 from tui.panels.panel import Panel, newest, other_type, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.outcome.model_usage import BrainReport
 
 TYPE = "diagnostic_msgs/msg/DiagnosticArray"
 LOOKS = {0: "good", 1: "muted"}
@@ -31,7 +26,6 @@ class BrainView(Drawing):
         self._reports: dict[str, BrainReport] = {}
 
     def hear(self, report: BrainReport) -> None:
-        """Show the newest report of a node."""
         if report.node in self._reports or len(self._reports) < MOST_NODES:
             self._reports[report.node] = report
             self.redraw()
@@ -41,7 +35,6 @@ class BrainView(Drawing):
         return bool(self._reports)
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw states first, then what the answers took, and what is left of the budget."""
         reports = [self._reports[name] for name in sorted(self._reports)]
         several = len(reports) > 1
         parts = [
@@ -68,6 +61,10 @@ class BrainPanel(Panel):
     weight = 2
     across_below = 80
 
+    def useful(self, rows: int) -> int:
+        """State, the last answer and the budget."""
+        return min(rows, 3)
+
     def compose(self) -> ComposeResult:
         yield BrainView()
 
@@ -76,7 +73,6 @@ class BrainPanel(Panel):
         return {BRAIN_STATE}
 
     def show(self, update: GraphUpdate) -> None:
-        """Show the newest report of each node."""
         view = self.query_one(BrainView)
         for sample in update.samples.get(BRAIN_STATE, ()):
             if sample.type_name == TYPE:

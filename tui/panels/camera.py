@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
+from functools import partial
 from time import monotonic
-from typing import TYPE_CHECKING
 
+from textual.app import ComposeResult
+
+from graph.data import GraphUpdate
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
-from graph.pictures.pixels import ImageError
+from graph.pictures.picture import Picture
 from robot.topics import CAMERA
 from text.figures import whole
 from text.i18n import N_, _, localized
 from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.session.messages import PicturesChanged
-from tui.widgets.image_view import ImageView, NewestPicture
+from tui.widgets.image_view import ImageView
 from tui.widgets.trouble import lost_words, trouble_words
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate, Sample
-    from graph.pictures.picture import Picture
 
 PERIOD_S = 0.3
 """Three pictures a second are enough for a terminal, and for SSH."""
@@ -38,8 +35,6 @@ class CameraPanel(Panel):
         self._refused = False
         """Whether an error message is shown because the last message was not a picture."""
         self._in_sight = False
-        self._hz = ""
-        self._newest = NewestPicture(self, self._fit, self._show_read, self._refuse_read)
 
     def compose(self) -> ComposeResult:
         yield ImageView(bits=4)
@@ -53,7 +48,6 @@ class CameraPanel(Panel):
         self.post_message(PicturesChanged())
 
     def on_hide(self) -> None:
-        """Ask for no more."""
         self._in_sight = False
         self.post_message(PicturesChanged())
 
@@ -65,7 +59,7 @@ class CameraPanel(Panel):
         if trouble is not None:
             self._refused = False
             row = row_of(update, CAMERA)
-            words = lost_words() if row and "raw" in row.facts else None
+            words = lost_words() if row and row.raw_from_afar else None
             view.show_words(*(words or (trouble_words(trouble, age_s), detail)))
             return
         if sample is None:
@@ -73,7 +67,7 @@ class CameraPanel(Panel):
                 view.show_words(_("waiting for the first picture"), CAMERA)
             return
         if sample.type_name != COMPRESSED_IMAGE and (wrong := other_type(sample, IMAGE)) is not None:
-            self._refuse(view, *wrong)
+            self._refuse(*wrong)
             return
         now_s = monotonic()
         if view.has_picture and now_s - self._shown_s < PERIOD_S:
@@ -82,21 +76,14 @@ class CameraPanel(Panel):
         row = row_of(update, CAMERA)
         if row is not None and row.pictures_from:
             row = row_of(update, row.pictures_from)
-        self._hz = "" if row is None or row.hz is None else whole(row.hz)
-        self._newest.take(sample)
+        hz = "" if row is None or row.hz is None else whole(row.hz)
+        title = _("this picture cannot be shown")
+        view.read(sample, partial(self._show_read, hz), lambda error: self._refuse(title, localized(error.words)))
 
-    def _fit(self, width: int, height: int) -> tuple[int, int]:
-        return self.query_one(ImageView).wanted(width, height)
-
-    def _show_read(self, _sample: Sample, picture: Picture) -> None:
+    def _show_read(self, hz: str, picture: Picture) -> None:
         self._refused = False
-        size = f"{picture.width}×{picture.height}"
-        self.query_one(ImageView).show(picture.rgb, size, hz=self._hz)
+        self.query_one(ImageView).show(picture.rgb, f"{picture.width}×{picture.height}", hz=hz)
 
-    def _refuse_read(self, _sample: Sample, error: ImageError) -> None:
-        words = localized(error.words)
-        self._refuse(self.query_one(ImageView), _("this picture cannot be shown"), words)
-
-    def _refuse(self, view: ImageView, headline: str, detail: str) -> None:
+    def _refuse(self, headline: str, detail: str) -> None:
         self._refused = True
-        view.show_words(headline, detail)
+        self.query_one(ImageView).show_words(headline, detail)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from textual.app import ComposeResult
+
+from graph.data import GraphUpdate, Sample
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
 from tui import clock
@@ -14,9 +17,6 @@ from tui.outcome.view import Outcome
 from tui.panels.panel import Panel, row_of
 
 if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate, Sample
     from robot.commands.schema import LlmResponse
 
 
@@ -40,11 +40,9 @@ class ComposerPanel(Panel):
         self._say()
 
     def followed(self) -> set[str]:
-        """The messages, and all topics that they may affect."""
         return {LLM_RAW_JSON, *FOLLOWED}
 
     def show(self, update: GraphUpdate) -> None:
-        """Start a trail with each message, and follow it."""
         for sample in update.samples.get(LLM_RAW_JSON, ()):
             row = row_of(update, LLM_RAW_JSON)
             listeners = [str(row.subscribers)] if row is not None and row.subscribers else []

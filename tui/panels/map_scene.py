@@ -7,11 +7,13 @@ turn. A metre has the same length in both directions.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robot.motion.odometry import Point as Place
 from robot.motion.odometry import Pose, yaw_from_quaternion
@@ -20,14 +22,7 @@ from space.reading.fields import NotDrawnError
 from space.reading.fields import field as field_of
 from space.reading.grids import grid_cells
 from tui.panels.sonar import COURSE, Bounds, ink_of
-from tui.widgets.canvas import Canvas
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from tui.widgets.canvas import Point
+from tui.widgets.canvas import Canvas, Point
 
 
 @dataclass(frozen=True)
@@ -40,7 +35,6 @@ class Extent:
     top_m: float
 
     def holding(self, *places: Point) -> Extent:
-        """Extend it to include these points."""
         across, up = [x for x, _y in places], [y for _x, y in places]
         return Extent(
             min([self.left_m, *across]),
@@ -50,7 +44,6 @@ class Extent:
         )
 
     def joined(self, other: Extent) -> Extent:
-        """Extend it to include both."""
         return self.holding((other.left_m, other.bottom_m), (other.right_m, other.top_m))
 
     def widened(self, margin_m: float) -> Extent:
@@ -83,12 +76,10 @@ class Viewport:
     """In cells."""
 
     def place(self, x_m: float, y_m: float) -> Point:
-        """The position of a point of the floor, in dots."""
         return (x_m - self.left_m) * self.dots_per_m, (self.top_m - y_m) * self.dots_per_m
 
 
 def fitted(extent: Extent, columns: int, rows: int) -> Viewport:
-    """Show all of an extent as large as possible in this many cells."""
     width_m = max(1e-6, extent.right_m - extent.left_m)
     height_m = max(1e-6, extent.top_m - extent.bottom_m)
     # Points on the edge are drawn in the outermost dot.
@@ -124,23 +115,9 @@ class OccupancyGrid:
     def centres(
         self, rows: NDArray[np.float64], columns: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Positions of cells, x and y in metres."""
         along, up = (columns + 0.5) * self.cell_m, (rows + 0.5) * self.cell_m
         cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
         return self.origin.x_m + cos * along - sin * up, self.origin.y_m + sin * along + cos * up
-
-    def occupied_at(self, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether there is an obstacle at these positions; outside there is none."""
-        east, north = x_m - self.origin.x_m, y_m - self.origin.y_m
-        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
-        columns = np.floor((cos * east + sin * north) / self.cell_m)
-        rows = np.floor((cos * north - sin * east) / self.cell_m)
-        high, wide = self.cells.shape
-        inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
-        found = np.zeros(x_m.shape, dtype=np.bool_)
-        at = rows[inside].astype(np.intp), columns[inside].astype(np.intp)
-        found[inside] = self.cells[at] >= OCCUPIED_FROM
-        return found
 
 
 def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
@@ -159,7 +136,6 @@ def pose_in(value: Mapping[str, Any]) -> tuple[Pose, str] | None:
 
 
 def goal_in(value: Mapping[str, Any]) -> Place | None:
-    """Read a PoseStamped with a goal; None if there is no goal any more."""
     found = pose_in(value)
     if found is None or not found[1]:
         return None
@@ -167,7 +143,6 @@ def goal_in(value: Mapping[str, Any]) -> Place | None:
 
 
 def occupancy_in(value: Mapping[str, Any]) -> OccupancyGrid | None:
-    """Read an OccupancyGrid; None for an invalid one."""
     try:
         found, frame = grid_cells(value), str(field_of(value, "header.frame_id"))
     except NotDrawnError:
@@ -202,55 +177,45 @@ class DrivenPath:
     """The points of the path in order, in pieces."""
 
     def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
         self.pieces: list[list[Point]] = []
         self.length_m = 0.0
-        self.revision = 0
-        """Changes when older points have been changed."""
-        self._least_m = LEAST_M
-        self._points = 0
-        self._corners: list[Point] = []
-
-    @property
-    def bounds(self) -> list[Point]:
+        self.bounds: list[Point] = []
         """Opposite corners of the bounding box of the whole path; none at first."""
-        return self._corners
+        self._least_m = LEAST_M
 
-    def add(self, x_m: float, y_m: float) -> bool:
-        """Continue to a point; return whether the path has changed."""
+    def add(self, x_m: float, y_m: float) -> None:
         way_m = math.dist(self.pieces[-1][-1], (x_m, y_m)) if self.pieces else math.inf
         if way_m < self._least_m:
-            return False
+            return
         if way_m > max(TORN_M, 2 * self._least_m):
             self.pieces.append([(x_m, y_m)])
         else:
             self.length_m += way_m
             self.pieces[-1].append((x_m, y_m))
-        self._points += 1
-        across, up = zip(*self._corners, (x_m, y_m), strict=True)
-        self._corners = [(min(across), min(up)), (max(across), max(up))]
-        if self._points > MOST:
-            self._thin()
-        return True
+        across, up = zip(*self.bounds, (x_m, y_m), strict=True)
+        self.bounds = [(min(across), min(up)), (max(across), max(up))]
+        if sum(map(len, self.pieces)) > MOST:
+            # Without every second point, and the oldest pieces.
+            self.pieces = [[*piece[:-1:2], piece[-1]] for piece in self.pieces[-MOST // 4 :]]
+            self._least_m *= 2
 
-    def clear(self) -> None:
-        self.pieces, self.length_m, self._points = [], 0.0, 0
-        self._least_m, self._corners = LEAST_M, []
-        self.revision += 1
-
-    def _thin(self) -> None:
-        """Drop every second point, and the oldest pieces."""
-        self.pieces = [_halved(piece) for piece in self.pieces[-MOST // 4 :]]
-        self._points = sum(map(len, self.pieces))
-        self._least_m *= 2
-        self.revision += 1
-
-
-def _halved(piece: list[Point]) -> list[Point]:
-    kept = piece[::2]
-    return kept if kept[-1] == piece[-1] else [*kept, piece[-1]]
+    def draw(self, canvas: Canvas, view: Viewport) -> None:
+        for piece in self.pieces:
+            x, y = np.transpose([view.place(*point) for point in piece])
+            across, down = np.diff(x), np.diff(y)
+            # Of each way as many dots as it takes to have no gap.
+            dots = np.maximum(1, np.ceil(np.maximum(abs(across), abs(down)))).astype(int) + 1
+            at = np.repeat(np.arange(len(dots)), dots)
+            share = (np.arange(len(at)) - np.repeat(np.cumsum(dots) - dots, dots)) / (dots[at] - 1)
+            canvas.dots(x[at] + across[at] * share, y[at] + down[at] * share, PATH)
 
 
 FRONT, REAR = "front", "rear"
+APART_M, APART_RAD = 0.05, math.radians(5)
+"""Differences from which on the true pose is shown beside the odometry."""
 BODY = Body()
 MAX_RANGE_M = SimulatedSonar().farthest_m
 """The length of a cone in which nothing was detected."""
@@ -276,17 +241,29 @@ _GRID_CELLS = 4
 """Minimum distance between the dots of the grid, in cells."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Scene:
-    """Everything that moves, that is all but the room and the path."""
+    """All that is to be seen."""
 
     pose: Pose
+    frame: str = ""
     truth: Pose | None = None
+    """The true pose of a simulated robot, if it is published."""
     goal: Place | None = None
     rays: dict[str, float] = field(default_factory=dict)
     """`FRONT` and `REAR` to metres according to REP-117."""
     bounds: Bounds = COURSE
     """Which of these distances count as near."""
+    occupancy: OccupancyGrid | None = None
+    path: DrivenPath = field(default_factory=DrivenPath)
+
+    @property
+    def truth_apart(self) -> Pose | None:
+        """The true pose, if it differs from the pose."""
+        if self.truth is None:
+            return None
+        turned = abs(math.remainder(self.truth.heading_rad - self.pose.heading_rad, math.tau))
+        return self.truth if self.pose.distance_to(self.truth) >= APART_M or turned >= APART_RAD else None
 
 
 def ray_origin(pose: Pose, place: str) -> tuple[Point, float]:
@@ -298,7 +275,6 @@ def ray_origin(pose: Pose, place: str) -> tuple[Point, float]:
 
 
 def along(start: Point, heading_rad: float, metres: float) -> Point:
-    """The point at this distance in a direction."""
     return start[0] + metres * math.cos(heading_rad), start[1] + metres * math.sin(heading_rad)
 
 
@@ -324,31 +300,25 @@ def grid_step_m(view: Viewport) -> float:
 
 
 def draw_occupancy(canvas: Canvas, view: Viewport, occupancy: OccupancyGrid) -> None:
-    """Draw the obstacles in the room."""
-    if occupancy.cell_m * view.dots_per_m <= 1.0:
-        rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
-        x_m, y_m = occupancy.centres(rows.astype(np.float64), columns.astype(np.float64))
-        canvas.dots((x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL)
-        return
-    x, y = np.meshgrid(np.arange(canvas.width) + 0.5, np.arange(canvas.height) + 0.5)
-    stands = occupancy.occupied_at(view.left_m + x / view.dots_per_m, view.top_m - y / view.dots_per_m)
-    canvas.dots(x[stands], y[stands], WALL)
-
-
-def draw_path(canvas: Canvas, view: Viewport, piece: list[Point]) -> None:
-    """Draw a piece of the path."""
-    for start, end in pairwise(piece):
-        canvas.line(view.place(*start), view.place(*end), PATH)
+    rows, columns = np.nonzero(occupancy.cells >= OCCUPIED_FROM)
+    # As many points of each cell as it takes to fill it.
+    count = max(1, math.ceil(occupancy.cell_m * view.dots_per_m))
+    within = (np.arange(count) + 0.5) / count - 0.5
+    x_m, y_m = occupancy.centres(rows[:, None, None] + within[:, None], columns[:, None, None] + within)
+    canvas.dots((x_m - view.left_m) * view.dots_per_m, (view.top_m - y_m) * view.dots_per_m, WALL)
 
 
 def draw_scene(canvas: Canvas, view: Viewport, scene: Scene) -> None:
-    """Draw everything that moves, the robot last."""
+    draw_grid(canvas, view, grid_step_m(view))
+    if scene.occupancy is not None:
+        draw_occupancy(canvas, view, scene.occupancy)
+    scene.path.draw(canvas, view)
     for place, metres in scene.rays.items():
         _draw_ray(canvas, view, scene.pose, place, metres, ink_of(metres, scene.bounds))
     if scene.goal is not None:
         canvas.sign(view.place(scene.goal.x_m, scene.goal.y_m), GOAL_SIGN, GOAL)
-    if scene.truth is not None:
-        truth, believed = robot_corners(view, scene.truth), robot_corners(view, scene.pose)
+    if scene.truth_apart is not None:
+        truth, believed = robot_corners(view, scene.truth_apart), robot_corners(view, scene.pose)
         if max(map(math.dist, truth, believed)) >= _APART:
             canvas.outline(truth, TRUTH)
     _draw_robot(canvas, view, scene.pose)
@@ -405,34 +375,3 @@ def _placed(view: Viewport, pose: Pose, shape: tuple[Point, ...], longer: float,
         y = left * wider * BODY.width_m / 2
         corners.append(view.place(pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos))
     return corners
-
-
-class Layers:
-    """The canvas below everything that moves."""
-
-    def __init__(self) -> None:
-        self._canvas = Canvas(1, 1)
-        self._drawn: tuple[Viewport, OccupancyGrid | None, DrivenPath, int] | None = None
-        self._done = (0, 0)
-        """Number of pieces of the path that have been drawn, and of points in the last of them."""
-
-    def canvas(self, view: Viewport, occupancy: OccupancyGrid | None, trail: DrivenPath) -> Canvas:
-        """Return a copy with grid, room and path, to draw the rest on."""
-        wanted = (view, occupancy, trail, trail.revision)
-        if wanted != self._drawn:
-            self._drawn, self._done = wanted, (0, 0)
-            self._canvas = Canvas(view.columns, view.rows)
-            draw_grid(self._canvas, view, grid_step_m(view))
-            if occupancy is not None:
-                draw_occupancy(self._canvas, view, occupancy)
-        self._go_on(view, trail)
-        return self._canvas.copy()
-
-    def _go_on(self, view: Viewport, trail: DrivenPath) -> None:
-        pieces, points = self._done
-        for number in range(max(0, pieces - 1), len(trail.pieces)):
-            piece = trail.pieces[number]
-            # The next line begins at the last point drawn.
-            first = max(0, points - 1) if number == pieces - 1 else 0
-            draw_path(self._canvas, view, piece[first:])
-        self._done = len(trail.pieces), len(trail.pieces[-1]) if trail.pieces else 0

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
 from textual.containers import Vertical
 from textual.content import Content
+from textual.visual import VisualType
 
-from graph.data import Trouble
+from graph.data import GraphUpdate, Sample, TopicRow, Trouble
 from text.i18n import _
 from text.plain import plain
 from tui.faults import report_fault
 from tui.widgets.drawing import Placeholder
-
-if TYPE_CHECKING:
-    from textual.visual import VisualType
-
-    from graph.data import GraphUpdate, Sample, TopicRow
 
 ALWAYS = 1_000_000
 CORNERS, SIDES = 2, 6
@@ -56,7 +52,6 @@ class Panel(Vertical):
         self._entitle()
 
     def name_source(self, topic: str) -> None:
-        """Show the topic in the title if it is not the usual one."""
         if topic != self._source:
             self._source = topic
             self._entitle()
@@ -68,7 +63,6 @@ class Panel(Vertical):
             self._entitle()
 
     def on_resize(self) -> None:
-        """Show the title in the words that fit."""
         self._entitle()
 
     def _entitle(self) -> None:
@@ -80,6 +74,10 @@ class Panel(Vertical):
         titles = [f"{name} {plain(words)}" for words in pages] or [name]
         fits = (title for title in titles if cell_len(title) <= room)
         self.border_title = Content(next(fits, titles[-1]))
+
+    def useful(self, rows: int) -> int:
+        """Return of how many of these rows it has any use."""
+        return rows
 
     def watched(self) -> set[str]:
         """Return the topics whose newest message is needed."""
@@ -102,7 +100,6 @@ class Panel(Vertical):
         raise NotImplementedError
 
     def keep(self, update: GraphUpdate) -> None:
-        """Take in new values while the panel is hidden."""
         self.show(update)
 
     def take(self, update: GraphUpdate, *, seen: bool = True) -> None:
@@ -140,7 +137,6 @@ class Panel(Vertical):
 
 
 def row_of(update: GraphUpdate, topic: str) -> TopicRow | None:
-    """Return the row of a topic, None if there is none."""
     return next((row for row in update.topics if row.name == topic), None)
 
 
@@ -150,13 +146,11 @@ def is_published(update: GraphUpdate, topic: str) -> bool:
 
 
 def newest(update: GraphUpdate, topic: str) -> Sample | None:
-    """Return the newest sample of a topic, None if none has come."""
     samples = update.samples.get(topic)
     return samples[-1] if samples else None
 
 
 def trouble_of(update: GraphUpdate, topic: str) -> tuple[Trouble | None, str, float | None]:
-    """Return (trouble, details, age of the newest message) of a topic."""
     row = row_of(update, topic)
     if row is None:
         return Trouble.NO_PUBLISHER, topic, None
@@ -219,7 +213,6 @@ class Joints:
         self._other: Sample | None = None
 
     def hear(self, sample: Sample, *, read: bool) -> None:
-        """Take in a message, and whether it was readable."""
         if read:
             self._read_s, self._other = sample.received_s, None
         elif not 0.0 <= sample.received_s - self._read_s < ANOTHER_S:
@@ -227,7 +220,6 @@ class Joints:
 
     @property
     def placeholder(self) -> Placeholder | None:
-        """What to show instead of values: which joints are received, and which are expected."""
         sample = self._other
         if sample is None:
             return None

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from textual.binding import Binding, BindingType
 from textual.containers import Container
+from textual.events import Click, Resize
 from textual.message import Message
 
 from launcher.profile.panels import PANELS
 from text.i18n import _
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from textual.events import Click, Resize
-
     from tui.panels.panel import Panel
 
 Row: TypeAlias = "list[Panel]"
 BESIDE_FROM = 52
 """Width from which on two panels stand side by side."""
 TWICE = 2
-"""Clicks that enlarge a panel."""
 
 
 class PanelGrid(Container, can_focus=True):
@@ -57,7 +54,6 @@ class PanelGrid(Container, can_focus=True):
         self._chosen: Panel | None = None
 
     async def put_up(self, names: Iterable[str]) -> None:
-        """Make the panels of these names in place of those that are there."""
         await self.remove_children()
         self._panels = [made(name) for name in names if name in PANELS]
         self._chosen, self._page, self._pages = None, 0, []
@@ -66,12 +62,10 @@ class PanelGrid(Container, can_focus=True):
 
     @property
     def chosen(self) -> Panel | None:
-        """The chosen panel, by default the first of the page."""
         shown = [panel for panel in self._panels if panel.display]
         return self._chosen if self._chosen in shown else next(iter(shown), None)
 
     def choose(self, panel: Panel) -> None:
-        """Choose a panel, and show the page that it is on."""
         self._chosen = panel
         holds = (at for at, page in enumerate(self._pages) if any(panel in row for row in page))
         page = next(holds, self._page)
@@ -90,7 +84,6 @@ class PanelGrid(Container, can_focus=True):
         return there
 
     def action_choose_next(self, step: int) -> None:
-        """Choose the panel this many places further."""
         self.choose_next(step)
 
     def on_focus(self) -> None:
@@ -102,17 +95,14 @@ class PanelGrid(Container, can_focus=True):
 
     @property
     def panels(self) -> Sequence[Panel]:
-        """All panels, shown or not."""
         return self._panels
 
     def turn(self) -> None:
-        """Show the next page."""
         if self._pages:
             self._page = (self._page + 1) % len(self._pages)
             self._lay_out(self.size.height)
 
     def on_click(self, event: Click) -> None:
-        """Choose the clicked panel; the title that mentions the pages turns them."""
         around = [] if event.widget is None else event.widget.ancestors_with_self
         clicked = [panel for panel in self._panels if panel in around]
         for panel in clicked:
@@ -125,7 +115,6 @@ class PanelGrid(Container, can_focus=True):
             self.turn()
 
     def on_resize(self, event: Resize) -> None:
-        """Place the panels in the new size."""
         self._fit(*event.size)
 
     def _fit(self, width: int, height: int) -> None:
@@ -140,7 +129,6 @@ class PanelGrid(Container, can_focus=True):
         self._lay_out(height)
 
     def on_language_changed(self) -> None:
-        """Show the page number in the current language."""
         self._lay_out(self.size.height)
 
     def _lay_out(self, height: int) -> None:
@@ -205,15 +193,28 @@ def paged(rows: Sequence[Row], height: int, frame: int) -> list[list[Row]]:
 
 
 def heights(rows: Sequence[Row], height: int, frame: int) -> list[int]:
-    """Divide the lines of a page: each row gets its minimum, and the rest is shared by weight."""
+    """Divide the lines of a page: each row gets its minimum, and the rest is shared by weight.
+
+    What a row has no use for goes to others, the heaviest first.
+    """
     weights = [max(panel.weight for panel in row) for row in rows]
     spare = max(0, height - sum(frame + least(row) for row in rows))
     shares = [spare * weight // sum(weights) for weight in weights]
-    if shares:
-        shares[weights.index(max(weights))] += spare - sum(shares)
-    return [frame + least(row) + share for row, share in zip(rows, shares, strict=True)]
+    lines = [useful(row, least(row) + share) for row, share in zip(rows, shares, strict=True)]
+    left = max(0, height - sum(frame + each for each in lines))
+    by_weight = sorted(range(len(rows)), key=lambda at: -weights[at])
+    for at in by_weight:
+        more = useful(rows[at], lines[at] + left) - lines[at]
+        lines[at], left = lines[at] + more, left - more
+    for at in by_weight[:1]:
+        lines[at] += left
+    return [frame + each for each in lines]
 
 
 def least(row: Row) -> int:
-    """Return the lines that a row needs within its frame."""
     return max(panel.least for panel in row)
+
+
+def useful(row: Row, lines: int) -> int:
+    """Return of how many of these lines a row has any use."""
+    return max(panel.useful(lines) for panel in row)

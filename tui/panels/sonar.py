@@ -6,21 +6,19 @@ import math
 from collections import deque
 from collections.abc import Iterable
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from textual.app import ComposeResult
 from textual.renderables.digits import DIGITS, DIGITS3X3_BOLD
 
-from robot.safety.gate_report import Gate, gate_in
-from robot.topics import SAFETY_STATE, SONAR_FRONT, SONAR_REAR
+from graph.data import GraphUpdate
+from robot.topics import SONAR_FRONT, SONAR_REAR
+from safety.gate_report import Gate, gate_in
+from safety.topics import SAFETY_STATE
 from text.figures import figure, whole
 from text.i18n import N_, _, decimal
 from tui.panels.panel import ALWAYS, Panel, is_published, newest, other_type, row_of, trouble_of
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
 
 FREE_FROM_M = 1.0
 """ai_brain drives ahead from this distance on."""
@@ -67,7 +65,6 @@ def zone_of(metres: float, bounds: Bounds = COURSE) -> Zone:
 
 
 def number(metres: float) -> str:
-    """The distance with two decimals, or a sign if it is not a number."""
     if math.isnan(metres):
         return "---"
     if math.isinf(metres):
@@ -90,7 +87,6 @@ _INK = {Zone.FREE: "good", Zone.CLOSE: "warn", Zone.STOP: "bad", Zone.BLIND: "ba
 
 
 def ink_of(metres: float, bounds: Bounds) -> str:
-    """The look of a bar of this length."""
     return _INK[zone_of(metres, bounds)]
 
 
@@ -117,12 +113,10 @@ def bar(metres: float, width: int, bounds: Bounds) -> Line:
 
 
 def mark_cell(metres: float, width: int) -> int:
-    """The cell of the bar for this distance."""
     return min(width - 1, int(width * metres / RANGE_M))
 
 
 def scale(width: int, bounds: Bounds) -> Line:
-    """Numbers below the strokes of the bar."""
     cells = [" "] * width
     for metres, text in (
         (0.0, "0"),
@@ -137,7 +131,6 @@ def scale(width: int, bounds: Bounds) -> Line:
 
 
 def big(text: str, look: str) -> list[Line]:
-    """Digits three lines high."""
     rows = ["", "", ""]
     for char in text:
         place = DIGITS.find(char)
@@ -215,22 +208,20 @@ ENLARGED_FROM = 18
 class Sonar(Drawing):
     """One sonar: from one line on name, metres and word; then bar, trend, big number and scale."""
 
-    def __init__(self, name: str = "", *, id: str | None = None, classes: str | None = None) -> None:
+    def __init__(self, name: str = "", *, id: str | None = None) -> None:
         """`name` is marked by `N_`: "front", "rear"."""
-        super().__init__(id=id, classes=classes)
+        super().__init__(id=id)
         self._label = name
         self._bounds = COURSE
         self._values: deque[float] = deque(maxlen=KEPT)
         self._times: deque[float] = deque(maxlen=KEPT)
 
     def show(self, metres: float, time_s: float) -> None:
-        """Take a reading in metres at a time in seconds."""
         self._values.append(metres)
         self._times.append(time_s)
         self.redraw()
 
     def set_bounds(self, bounds: Bounds) -> None:
-        """Show STOP and CLOSE below these distances from now on."""
         if bounds != self._bounds:
             self._bounds = bounds
             self.redraw()
@@ -327,12 +318,10 @@ class SonarPanel(Panel):
         self._bounds = COURSE
 
     def compose(self) -> ComposeResult:
-        """The front sonar above, or to the left of, the rear one."""
         yield Sonar(N_("front"), id="front")
         yield Sonar(N_("rear"), id="rear")
 
     def on_resize(self) -> None:
-        """Place them side by side if that leaves more lines to each."""
         self.set_class(self.size.width >= 56 and self.size.height < 16, "-flat")
 
     def watched(self) -> set[str]:
@@ -343,7 +332,6 @@ class SonarPanel(Panel):
         return set(TOPICS.values())
 
     def show(self, update: GraphUpdate) -> None:
-        """Show every reading, for the trend."""
         if is_published(update, SONAR_REAR):
             # One that has gone silent stays, with a remark.
             self.add_class("-both")

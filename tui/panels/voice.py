@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.cells import cell_len
+from textual.app import ComposeResult
 
+from graph.data import GraphUpdate
 from robot.sound import RATE_HZ, SILENCE_DBFS, level_dbfs, samples_of, text_in
 from robot.topics import AUDIO_LEVEL, HEARD, MICROPHONE, SPEAKER
 from text.figures import whole
@@ -19,14 +22,7 @@ from tui.log_view.index import folded
 from tui.log_view.rows import clock
 from tui.panels.panel import Panel, newest, other_type, row_of, trouble_of
 from tui.panels.sonar import EIGHTHS
-from tui.widgets.drawing import Drawing, Ink, Line, cells_of, fit
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.widgets.drawing import Placeholder
+from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, cells_of, fit
 
 LONGEST_TEXT = 2_000
 SHOWN_BYTES = 12
@@ -34,7 +30,6 @@ LEAST_PCM = 64
 """In bytes; anything shorter is not audible."""
 SLICES = 8
 QUIETEST_DB, LOUDEST_DB = -60.0, 0.0
-"""Ends of the bar."""
 LEVELS = "▁▂▃▄▅▆▇█"
 
 
@@ -56,19 +51,14 @@ class Heard:
             return self.text
         return _("PCM {seconds} s {levels}").format(seconds=decimal(f"{self.seconds:.1f}"), levels=self.levels)
 
-    def and_then(self, later: Heard) -> Heard:
-        """Join two pieces of one sound."""
-        levels = (self.levels + later.levels)[-SLICES:]
-        return Heard("", self.seconds + later.seconds, levels)
-
 
 def heard(data: bytes, sample_rate_hz: int = RATE_HZ) -> Heard:
     """Read the bytes of a message; any input gives a result that can be shown."""
     if not data:
         return Heard(_("(an empty message)"))
-    text = _text_in(data)
+    text = text_in(data)
     if text is not None:
-        return Heard(text)
+        return Heard(plain(" ".join(text.split()), LONGEST_TEXT))
     if len(data) < LEAST_PCM:
         count = ngettext("{count} byte, not text:", "{count} bytes, not text:", len(data))
         more = "…" if len(data) > SHOWN_BYTES else ""
@@ -77,13 +67,7 @@ def heard(data: bytes, sample_rate_hz: int = RATE_HZ) -> Heard:
     return Heard("", len(samples) / sample_rate_hz, _levels(samples))
 
 
-def _text_in(data: bytes) -> str | None:
-    text = text_in(data)
-    return None if text is None else plain(" ".join(text.split()), LONGEST_TEXT)
-
-
 def _levels(samples: NDArray[np.int16]) -> str:
-    """The loudness of each slice of the sound as a column."""
     levels = ""
     for part in np.array_split(samples, SLICES):
         share = 1 - max(QUIETEST_DB, level_dbfs(part.tobytes())) / QUIETEST_DB
@@ -149,20 +133,22 @@ class Saying:
 class VoiceView(Drawing):
     """Shows messages from the microphone (`human`) and to the loudspeaker (`robot`)."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
-        self._sayings: deque[Saying] = deque(maxlen=KEPT)
+    def __init__(self) -> None:
+        super().__init__()
+        self.sayings: deque[Saying] = deque(maxlen=KEPT)
         self._dbfs: float | None = None
         self._missing = False
 
     def hear(self, who: Speaker, data: bytes, time_s: float) -> None:
         """Add a message of bytes with its Unix time: UTF-8 text, 16-bit PCM, or anything else."""
         saying = Saying(who, time_s, heard(data))
-        last = next((one for one in reversed(self._sayings) if one.who == who), None)
-        if last is not None and _one_sound(last, saying):
-            self._sayings.remove(last)
-            saying = Saying(who, time_s, last.what.and_then(saying.what))
-        self._sayings.append(saying)
+        last = next((one for one in reversed(self.sayings) if one.who == who), None)
+        in_time = last is not None and abs(time_s - last.time_s) <= SAME_SOUND_S
+        if last is not None and in_time and last.what.is_sound and saying.what.is_sound:
+            self.sayings.remove(last)
+            levels = (last.what.levels + saying.what.levels)[-SLICES:]
+            saying = Saying(who, time_s, Heard("", last.what.seconds + saying.what.seconds, levels))
+        self.sayings.append(saying)
         self.redraw()
 
     def show_level(self, dbfs: float | None, *, missing: bool = False) -> None:
@@ -171,12 +157,6 @@ class VoiceView(Drawing):
             self._dbfs, self._missing = dbfs, missing
             self.redraw()
 
-    def clear(self) -> None:
-        """Remove everything that was said."""
-        self._sayings.clear()
-        self._dbfs, self._missing = None, False
-        self.refresh()
-
     @property
     def stale(self) -> bool:
         """Never: past messages do not become outdated."""
@@ -184,52 +164,45 @@ class VoiceView(Drawing):
 
     @property
     def has_value(self) -> bool:
-        return bool(self._sayings) or self._dbfs is not None or self._missing
-
-    @property
-    def has_talk(self) -> bool:
-        return bool(self._sayings)
+        return bool(self.sayings) or self._dbfs is not None or self._missing
 
     @property
     def draws(self) -> bool:
         """Whether to draw: the conversation is not hidden by remarks about unreadable messages."""
-        return self.has_talk or super().draws
+        return bool(self.sayings) or super().draws
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw as many of the newest messages as fit, and the level."""
-        below = [level_line(self._dbfs, width)] if self._tells_level else []
-        if not self._sayings:
+        below = [level_line(self._dbfs, width)] if self._dbfs is not None or self._missing else []
+        if not self.sayings:
             return [[Ink(_("nobody has said anything yet"), "muted")], *below][-height:]
         if self._placeholder is not None:
             below[:0] = [[Ink(text, "alert")] for text in folded(self._placeholder.detail, width)]
         talk = self._talk(width, max(1, height - len(below)))
         return [*talk, *below][:height]
 
-    @property
-    def _tells_level(self) -> bool:
-        return self._dbfs is not None or self._missing
-
     def _talk(self, width: int, height: int) -> list[Line]:
         if height == 1:
-            newest = self._sayings[-1]
+            newest = self.sayings[-1]
             lead, room = self._lead(newest, width)
             return [[*lead, Ink(fit(newest.what.words, room).rstrip(), _body(newest.what))]]
         lines: list[Line] = []
-        for saying in reversed(self._sayings):
-            lines[:0] = self._saying_lines(saying, width)
+        for saying in reversed(self.sayings):
             if len(lines) >= height:
-                return lines[-height:]
+                break
+            lines[:0] = self._saying_lines(saying, width, height - len(lines))
         return lines
 
-    def _saying_lines(self, saying: Saying, width: int) -> list[Line]:
+    def _saying_lines(self, saying: Saying, width: int, most: int) -> list[Line]:
+        """Return who said what, in at most so many lines: its end is left out rather than who said it."""
         lead, room = self._lead(saying, width)
-        first, *rest = folded(saying.what.words, room)
+        first, *rest = shown = folded(saying.what.words, room)
+        if len(shown) > most:
+            first, *rest = [*shown[: most - 1], fit(f"{shown[most - 1]} {shown[most]}", room)]
         body = _body(saying.what)
         indent = Ink(" " * (width - room))
         return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
 
     def _lead(self, saying: Saying, width: int) -> tuple[Line, int]:
-        """Speaker and time, and the cells that are left for the text."""
         names = {"human": _("human"), "robot": _("robot")}
         name = fit(names[saying.who], max(map(cell_len, names.values())))
         when = f"{clock(saying.time_s, 8)} " if width >= WITH_TIME_FROM else ""
@@ -240,11 +213,6 @@ class VoiceView(Drawing):
 
 def _body(what: Heard) -> str:
     return "muted" if what.is_sound else ""
-
-
-def _one_sound(last: Saying, saying: Saying) -> bool:
-    both = last.what.is_sound and saying.what.is_sound
-    return both and abs(saying.time_s - last.time_s) <= SAME_SOUND_S
 
 
 TYPE = "std_msgs/msg/ByteMultiArray"
@@ -258,7 +226,7 @@ class VoicePanel(Panel):
 
     title = N_("Voice")
     least = 2
-    weight = 2
+    weight = 3
     across_below = 80
 
     def __init__(self) -> None:
@@ -269,14 +237,12 @@ class VoicePanel(Panel):
         yield VoiceView()
 
     def followed(self) -> set[str]:
-        """All messages of microphone and loudspeaker, and the words that were recognised."""
         return {*TOPICS, HEARD}
 
     def watched(self) -> set[str]:
         return {AUDIO_LEVEL}
 
     def show(self, update: GraphUpdate) -> None:
-        """Add what was said, in order of arrival."""
         talk = self.query_one(VoiceView)
         said = [sample for topic in (*TOPICS, HEARD) for sample in update.samples.get(topic, ())]
         for sample in sorted(said, key=lambda one: one.received_s):
@@ -291,7 +257,6 @@ class VoicePanel(Panel):
         talk.show_trouble(*((None,) if placeholder else trouble_of(update, MICROPHONE)))
 
     def _of_another_type(self, update: GraphUpdate) -> Placeholder | None:
-        """Return what to show for the first topic with messages of another type."""
         for topic in TOPICS:
             if topic in update.samples:
                 self._placeholder[topic] = other_type(newest(update, topic), TYPE)
@@ -313,4 +278,4 @@ class VoicePanel(Panel):
             return
         # The course's own microphone does not report a level.
         there = microphone is not None and microphone.publishers > 0
-        talk.show_level(None, missing=not there and talk.has_talk)
+        talk.show_level(None, missing=not there and bool(talk.sayings))

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.cells import cell_len
+from textual.app import ComposeResult
 
+from graph.data import GraphUpdate
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL, STEERING
 from robot.kinematics import TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, turning_radius, wheel_speeds
 from robot.topics import DRIVE, WHEEL_COMMANDS
@@ -16,13 +18,7 @@ from text.figures import figure, short
 from text.i18n import N_, _, decimal
 from tui.panels.panel import Joints, Panel, first_published, has_joints, joint_number, newest, other_type, trouble_of
 from tui.widgets.canvas import Canvas, rectangle
-from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import GraphUpdate
-    from tui.widgets.drawing import Placeholder
+from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
 
 STANDING_BELOW_M_S = 0.005
 EVEN_WITHIN_M_S = 0.003
@@ -48,7 +44,6 @@ class WheelsReading:
 
     @property
     def words(self) -> str:
-        """Say which wheel is slower, or that they stand or turn alike."""
         left, right = abs(self.left_m_s), abs(self.right_m_s)
         if not (math.isfinite(left) and math.isfinite(right)):
             return _("not a number")
@@ -87,7 +82,6 @@ HALF = "▄", "▀"
 
 
 def chassis(wheels: WheelsReading, columns: int, rows: int) -> list[Line]:
-    """Draw body, axles and four wheels in this many cells."""
     dots = Canvas(columns, rows)
     scale = min(dots.height / LENGTH_M, dots.width / WIDTH_M)
     middle, front = dots.width / 2, (dots.height - scale * WHEELBASE_M) / 2
@@ -132,21 +126,17 @@ def speed_bar(speed_m_s: float, most_m_s: float, rows: int, look: str) -> list[L
 MOST_M_S = 0.5
 """A speed of this many m/s fills the bar; a faster wheel stretches the scale."""
 DRAWN_FROM = (30, 8)
-"""Columns and lines from which on the chassis is drawn."""
 SIDE = 9
-"""Cells for `-0.25 m/s`."""
 
 
 class WheelsView(Drawing):
-    """Shows a `WheelsReading`: in words from one line on, drawn from above if there is room."""
+    """Shows a `WheelsReading`: in words, drawn from above if there is room."""
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        """Start without a reading."""
-        super().__init__(id=id, classes=classes)
+    def __init__(self) -> None:
+        super().__init__()
         self._wheels: WheelsReading | None = None
 
     def show(self, wheels: WheelsReading) -> None:
-        """Show these speeds and this angle."""
         if wheels != self._wheels:
             self._wheels = wheels
             self.redraw()
@@ -161,8 +151,6 @@ class WheelsView(Drawing):
             return []
         if width >= DRAWN_FROM[0] and height >= DRAWN_FROM[1]:
             return self._from_above(wheels, width, height)
-        if height == 1:
-            return [self._one_line(wheels, width)]
         return self._rows(wheels, width)[:height]
 
     def _from_above(self, wheels: WheelsReading, width: int, height: int) -> list[Line]:
@@ -202,28 +190,12 @@ class WheelsView(Drawing):
             lines.append([Ink(head, look), *_level(speed, width - cell_len(head), look)])
         return [*lines, self._steering(wheels, width)]
 
-    def _one_line(self, wheels: WheelsReading, width: int) -> Line:
-        speeds = [
-            Ink(_("left") + " " + speed_words(wheels.left_m_s), "accent"),
-            Ink("  "),
-            Ink(_("right") + " " + speed_words(wheels.right_m_s), "second"),
-        ]
-        words = self.stale_words if self.stale else wheels.words
-        word = [Ink(words, "alert" if self.stale else "strong")]
-        if cells_of(speeds) + cells_of(word) >= width:
-            speeds = [
-                Ink(f"{number_words(wheels.left_m_s)} ‖ ", "accent"),
-                Ink(speed_words(wheels.right_m_s), "second"),
-            ]
-        return beside(speeds, word, width)
-
 
 def _number(value: float) -> float:
     return value if math.isfinite(value) else 0.0
 
 
 def _side(name: str, speed: float, rows: int, look: str, *, right: bool) -> list[Line]:
-    """Name and speed of a wheel, beside the rear wheels."""
     texts = [""] * rows
     words = speed_words(speed)
     texts[rows - 2] = name
@@ -239,7 +211,6 @@ def _level(speed: float, width: int, look: str) -> Line:
 
 
 def number_words(value: float) -> str:
-    """`-0.25`."""
     return figure(value) if math.isfinite(value) else "---"
 
 
@@ -261,7 +232,6 @@ def angle_words(steering_rad: float) -> str:
 
 
 def radius_words(radius_m: float) -> str:
-    """`R 0.46 m`, without a sign: the angle shows the side."""
     if math.isnan(radius_m):
         return "R ---"
     if math.isinf(radius_m):
@@ -280,6 +250,10 @@ class WheelsPanel(Panel):
     weight = 4
     across_below = 80
 
+    def useful(self, rows: int) -> int:
+        """Words take four; from above, a chassis that is higher than this says no more."""
+        return min(rows, DRAWN_FROM[1] + 4) if rows >= DRAWN_FROM[1] else min(rows, self.least)
+
     def __init__(self) -> None:
         super().__init__()
         self._joints = Joints(WHEEL_COMMANDS, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))
@@ -290,7 +264,6 @@ class WheelsPanel(Panel):
         yield WheelsView()
 
     def watched(self) -> set[str]:
-        """The commands to the wheels, and those to the chassis."""
         return {WHEEL_COMMANDS, DRIVE}
 
     def show(self, update: GraphUpdate) -> None:

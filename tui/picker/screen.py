@@ -13,6 +13,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from launcher.errors import LauncherError
+from launcher.profile.defaults import shown
 from launcher.profile.panels import PANELS
 from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
@@ -241,13 +242,12 @@ class PickerScreen(Screen[None], Acting, Working):
     async def start_own(self) -> None:
         """Make the learner's folder of the chosen lesson, and start it."""
         # Not needed for the first frame.
-        from course.folder.folder import own_profile
-        from course.lessons.lesson import LessonFolder
+        from tui.lesson.tasks import own_of
 
         if self.chosen_task is None:
             return
         try:
-            profile = await asyncio.to_thread(own_profile, LessonFolder(self.chosen_task.folder))
+            profile = await asyncio.to_thread(own_of, self.chosen_task)
         except (LauncherError, OSError) as error:
             self.notify(plain(localized(reason_of(error))), severity="error", markup=False)
             return
@@ -415,7 +415,7 @@ def _about_lesson(lesson: Lesson) -> Content:
     known = ((panel, PANELS.get(panel)) for panel in lesson.panels)
     shows = [_(entry.title) if entry else plain(panel) for panel, entry in known]
     lines.append(_field(_("Shows"), ", ".join([*shows, _("log")])))
-    lines.append(_field(_("File"), plain(str(lesson.path))))
+    lines.append(_field(_("File"), plain(shown(lesson.path))))
     return Content("\n").join(lines)
 
 

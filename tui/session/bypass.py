@@ -1,7 +1,7 @@
 """Publishers that bypass the gate and the differential, or speak for a sonar of the gate; and what is normal.
 
 The nodes of the session may publish anything that their profile says. Any other publisher on these topics bypasses
-the gate, and so does a second publisher with the name of one of them. If the session has no such node of Deck's, the
+the gate, and so does a second publisher with the name of one of them. If no node of the session has that role, the
 owner of the topic is unknown; then only two publishers are reported, and so it is with the distances, of which the
 gate takes the lowest.
 """
@@ -14,55 +14,29 @@ from typing import TYPE_CHECKING
 
 from graph.data import NAMELESS
 from graph.findings.finding import GraphNorms
-from robot.safety.moving_topics import SOLE, moves
-from robot.topics import DRIVE_SAFE, MAY_WAIT, OF_MANY, SONAR_FRAMES, WHEEL_COMMANDS
+from safety.moving_topics import moves
+from safety.topics import EMERGENCY_STOP
 from text.i18n import _
 from text.plain import plain
+from text.robot import robot
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from graph.data import GraphUpdate, TopicRow
     from launcher.status import NodeStatus
+    from text.robot import SoleTopic
 
 
-NORMS = GraphNorms(moves, SOLE, OF_MANY, MAY_WAIT)
-
-
+NORMS = GraphNorms(
+    moves, frozenset(one.topic for one in robot().sole), robot().of_many, robot().may_wait | {EMERGENCY_STOP}
+)
 OURSELVES = "Deck"
 """Stands for what is published from this screen at a rate."""
 NAMED_WITHIN_S = 3.0
 """An endpoint gets its name slightly later; one without a node never gets a name."""
 FORGOTTEN_S = 25.0
 """For this long the middleware may still report a publisher that was killed with its node."""
-
-
-@dataclass(frozen=True)
-class ReservedTopic:
-    """A topic on which one node of Deck's should be the only publisher."""
-
-    module: str
-    """That of the node."""
-    topic: str
-    type_name: str
-    names: frozenset[str]
-    """Names of the node when no profile contains it."""
-
-
-RESERVED = (
-    ReservedTopic(
-        "nodes.safety_stop",
-        DRIVE_SAFE,
-        "ackermann_msgs/msg/AckermannDriveStamped",
-        frozenset({"/safety_node", "/safety_stop"}),
-    ),
-    ReservedTopic(
-        "nodes.electronic_differential",
-        WHEEL_COMMANDS,
-        "sensor_msgs/msg/JointState",
-        frozenset({"/electronic_differential"}),
-    ),
-)
 
 
 @dataclass(frozen=True)
@@ -97,13 +71,13 @@ class BypassDetector:
         ours = frozenset(one.topic for one in update.publications if not one.error)
         found = {
             publisher: self._seen_s.get(publisher, update.time_s)
-            for reserved in RESERVED
+            for reserved in robot().sole
             for publisher in _on_topics_of(reserved, update.topics, nodes, ours)
         }
         found |= {
             publisher: self._seen_s.get(publisher, update.time_s)
             for row in update.topics
-            if row.name in SONAR_FRAMES
+            if row.name in robot().frames
             for publisher in _with_sonars(row, nodes, ours)
         }
         before, self._seen_s = self.now, found
@@ -120,7 +94,7 @@ class BypassDetector:
 
     def words(self) -> tuple[str, ...]:
         """Return texts that say who they are, from long to short; empty if there are none."""
-        commands = [one for one in self.now if one.topic not in SONAR_FRAMES]
+        commands = [one for one in self.now if one.topic not in robot().frames]
         # The screen has one line, and who commands the wheels is the worse.
         shown = commands or list(self.now)
         if not shown:
@@ -136,9 +110,9 @@ class BypassDetector:
 
 
 def _on_topics_of(
-    reserved: ReservedTopic, rows: Iterable[TopicRow], nodes: Mapping[str, NodeStatus], ours: Collection[str]
+    reserved: SoleTopic, rows: Iterable[TopicRow], nodes: Mapping[str, NodeStatus], ours: Collection[str]
 ) -> Iterator[BypassingPublisher]:
-    owners = {f"/{node.name}": node for node in nodes.values() if node.command == reserved.module}
+    owners = {f"/{node.name}": node for node in nodes.values() if reserved.role in node.roles}
     for row in rows:
         if row.name != reserved.topic and reserved.type_name not in row.type_names:
             continue
@@ -171,7 +145,7 @@ def _with_sonars(row: TopicRow, nodes: Mapping[str, NodeStatus], ours: Collectio
 def _bypassing(
     topic: str,
     by: Counter[str],
-    reserved: ReservedTopic,
+    reserved: SoleTopic,
     owners: Mapping[str, NodeStatus],
     nodes: Mapping[str, NodeStatus],
 ) -> Sequence[BypassingPublisher]:

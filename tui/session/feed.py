@@ -16,9 +16,10 @@ from graph.data import Interest
 from graph.observer.requests import StopCommanding
 from launcher.consent import Agents
 from text.i18n import _
+from text.robot import robot
 from tui.session.messages import AgentsChanged, GraphChanged, LogArrived, SessionChanged, StatusChanged
 from tui.session.outside import ROSOUT, Outside, RosoutReader
-from tui.session.past import FLOW_TOPICS, KEPT_LINES, SONARS, GraphInbox, LogHistory, Past, ended_nodes, silent_graph
+from tui.session.past import KEPT_LINES, TRENDS, GraphInbox, LogHistory, Past, ended_nodes, silent_graph
 from tui.session.watching import WATCH
 
 if TYPE_CHECKING:
@@ -323,8 +324,8 @@ class Feed:
         followed = own.union(self._followed).union(*(screen.follow_topics() for screen in self._screens))
         kept: set[str] = set().union(*(screen.keep_topics() for screen in self._screens))
         if self.replay is None:
-            followed |= set(FLOW_TOPICS)
-            kept |= set(SONARS)
+            followed |= set(robot().story)
+            kept |= set(TRENDS)
         looks = self._measures_all or (front is not None and front.measure_all)
         graph.want(
             Interest(

@@ -15,19 +15,7 @@ from typing import TYPE_CHECKING
 
 from graph.data import TopicRow, Trouble
 from graph.observer.updates import merged
-from robot.topics import (
-    AI_COMMAND,
-    BRAIN_STATE,
-    DRIVE,
-    DRIVE_SAFE,
-    HEAD_STATE,
-    LLM_RAW_JSON,
-    MICROPHONE,
-    SONAR_FRONT,
-    SONAR_REAR,
-    SPEAKER,
-    WHEEL_COMMANDS,
-)
+from text.robot import robot
 
 if TYPE_CHECKING:
     from graph.data import GraphUpdate, Sample, Value
@@ -58,19 +46,8 @@ class GraphInbox:
         return update
 
 
-FLOW_TOPICS = (
-    MICROPHONE,
-    BRAIN_STATE,
-    LLM_RAW_JSON,
-    AI_COMMAND,
-    DRIVE,
-    DRIVE_SAFE,
-    WHEEL_COMMANDS,
-    HEAD_STATE,
-    SPEAKER,
-)
-"""Causes before effects, which decides the order of messages with the same time."""
-SONARS = (SONAR_FRONT, SONAR_REAR)
+TRENDS = tuple(robot().frames)
+"""The distances, of which a panel shows the course."""
 KEPT = 240
 """Messages of a topic, as many as a trend shows."""
 KEPT_BYTES = 2_000_000
@@ -90,13 +67,13 @@ class Past:
         self._bytes.clear()
 
     def take(self, update: GraphUpdate) -> None:
-        for topic in (*FLOW_TOPICS, *SONARS):
+        for topic in (*robot().story, *TRENDS):
             for sample in update.samples.get(topic, ()):
                 self._keep(topic, sample)
 
     def _keep(self, topic: str, sample: Sample) -> None:
         kept = self._kept.setdefault(topic, deque())
-        if topic not in SONARS and len(kept) > 1:
+        if topic not in TRENDS and len(kept) > 1:
             said = _said(sample)
             if said == _said(kept[-1]) == _said(kept[-2]):
                 return

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from launcher.profile.defaults import FOLDERS_OWN
+
+if TYPE_CHECKING:
+    from launcher.profile.catalog import ProfileEntry
 
 
 class Score(NamedTuple):
@@ -62,6 +65,11 @@ class Lesson(NamedTuple):
     """What there is to do in it, if it has steps."""
     error: str = ""
     """Why it cannot be started: `file:line:column: field: message`; empty if it can."""
+
+    @classmethod
+    def of(cls, entry: ProfileEntry, task: Task | None = None) -> Lesson:
+        said = (entry.title, entry.about, entry.lesson, entry.nodes, entry.panels)
+        return cls(entry.name, entry.path, *said, task, entry.error)
 
 
 class ReplayRequest(NamedTuple):

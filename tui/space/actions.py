@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from text.i18n import N_
+from text.i18n import N_, _
 from tui.actions.action import Announce, actions_of
 from tui.frame.actions.view import open_view
-from tui.space.aiming import AimKind
+from tui.space.aiming import GOAL, INITIAL
 
 if TYPE_CHECKING:
     from tui.space.screen import SpaceScreen
 
 action: Announce[SpaceScreen] = Announce()
-
-
-def _is_armed(screen: SpaceScreen) -> bool | None:
-    """Only while something is aimed."""
-    return screen.armed
 
 
 @action(
@@ -27,7 +22,7 @@ def _is_armed(screen: SpaceScreen) -> bool | None:
     N_("Publish the goal or the initial pose where the cross-hair is."),
     footer=True,
     palette=False,
-    when=_is_armed,
+    when=lambda screen: screen.armed,
 )
 def publish_aim(screen: SpaceScreen) -> None:
     screen.publish_aim()
@@ -40,7 +35,7 @@ def publish_aim(screen: SpaceScreen) -> None:
     N_("Stop aiming, and publish nothing."),
     footer=True,
     palette=False,
-    when=_is_armed,
+    when=lambda screen: screen.armed,
 )
 def disarm(screen: SpaceScreen) -> None:
     screen.disarm()
@@ -76,11 +71,13 @@ def fit_all(screen: SpaceScreen) -> None:
     "space.follow", "alt+t", N_("Follow"), N_("Choose a frame that stays in the middle of the picture."), footer=True
 )
 def follow_frame(screen: SpaceScreen) -> None:
-    screen.choose_follow()
+    def take(answer: str | None) -> None:
+        if answer:
+            screen.stage.follow_frame(answer.strip())
+            screen.view.fits = not screen.stage.follow
+            screen.show(by_user=True)
 
-
-def _has_layers(screen: SpaceScreen) -> bool | None:
-    return screen.has_layers
+    screen.ask_frame(lambda: _("Follow a frame"), lambda: _("no frame"), take)
 
 
 @action(
@@ -90,7 +87,6 @@ def _has_layers(screen: SpaceScreen) -> bool | None:
     N_("Show or hide the selected layer; a hidden one is not subscribed to."),
     means="leave out",
     footer=True,
-    when=_has_layers,
 )
 def toggle_layer(screen: SpaceScreen) -> None:
     screen.toggle_layer()
@@ -104,24 +100,28 @@ def toggle_layer(screen: SpaceScreen) -> None:
     footer=True,
 )
 def arm_goal(screen: SpaceScreen) -> None:
-    screen.arm(AimKind.GOAL)
+    screen.arm(GOAL)
+
+
+@action("space.only", "o", N_("Only this"), N_("Hide all layers but the selected one."), means="only this")
+def only_layer(screen: SpaceScreen) -> None:
+    chosen = screen.layer_rows.chosen
+    screen.stage.show_frames = chosen == "frames"
+    for layer in screen.stage.layers:
+        layer.on = layer.topic == chosen
+        if not layer.on:
+            layer.forget()
+    screen.layers_changed()
 
 
 @action(
-    "space.only",
-    "o",
-    N_("Only this"),
-    N_("Hide all layers but the selected one."),
-    means="only this",
-    when=_has_layers,
+    "space.all", "a", N_("All layers"), N_("Show all layers."), means="all", when=lambda screen: screen.is_mounted
 )
-def only_layer(screen: SpaceScreen) -> None:
-    screen.only_layer()
-
-
-@action("space.all", "a", N_("All layers"), N_("Show all layers."), means="all", when=_has_layers)
 def all_layers(screen: SpaceScreen) -> None:
-    screen.all_layers()
+    screen.stage.show_frames = True
+    for layer in screen.stage.layers:
+        layer.on = True
+    screen.layers_changed()
 
 
 @action(
@@ -131,7 +131,13 @@ def all_layers(screen: SpaceScreen) -> None:
     N_("Choose the frame in which everything is drawn, and goals are given."),
 )
 def fixed_frame(screen: SpaceScreen) -> None:
-    screen.choose_fixed()
+    def take(answer: str | None) -> None:
+        if answer:
+            screen.disarm()
+            screen.stage.wanted_fixed = answer.strip()
+            screen.fit()
+
+    screen.ask_frame(lambda: _("Fixed frame"), lambda: _("the robot's root"), take)
 
 
 @action(
@@ -141,7 +147,7 @@ def fixed_frame(screen: SpaceScreen) -> None:
     N_("Aim where the robot is now, for localization on a map, as a goal is aimed."),
 )
 def arm_initial_pose(screen: SpaceScreen) -> None:
-    screen.arm(AimKind.INITIAL)
+    screen.arm(INITIAL)
 
 
 SPACE_ACTIONS = actions_of(__name__)

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from robot.topics import GOAL_POSE, INITIAL_POSE
 from space.drawing.paints import Tint
-from space.drawing.shapes import Strokes, arrow, places
+from space.drawing.shapes import Shape, Strokes, arrow, places
 from space.transform import Transform, quaternion_from_rpy
 from text.i18n import _, decimal
 from text.plain import plain
+from text.ros_names import GOAL_POSE, INITIAL_POSE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from graph.data import Value
-    from space.drawing.shapes import Shape
 
 LONGEST = 40
 COVARIANCE = {0: 0.25, 7: 0.25, 35: (math.pi / 12) ** 2}
@@ -27,19 +24,15 @@ ARROW_DOTS, CROSS_DOTS = 26.0, 7.0
 HEADING_STEP_RAD = math.radians(15)
 
 
-class AimKind(Enum):
-    """What can be aimed: topic and type."""
+class AimKind(NamedTuple):
+    """What can be aimed."""
 
-    GOAL = (GOAL_POSE, "geometry_msgs/msg/PoseStamped")
-    INITIAL = (INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped")
+    topic: str
+    type_name: str
 
-    @property
-    def topic(self) -> str:
-        return self.value[0]
 
-    @property
-    def type_name(self) -> str:
-        return self.value[1]
+GOAL = AimKind(GOAL_POSE, "geometry_msgs/msg/PoseStamped")
+INITIAL = AimKind(INITIAL_POSE, "geometry_msgs/msg/PoseWithCovarianceStamped")
 
 
 @dataclass(frozen=True)
@@ -52,16 +45,13 @@ class Aim:
     heading_rad: float = 0.0
 
     def shifted(self, right_m: float, up_m: float) -> Aim:
-        """Return it at another place."""
         return replace(self, x_m=self.x_m + right_m, y_m=self.y_m + up_m)
 
     def turned(self, steps: int) -> Aim:
-        """Return it with the heading this many steps to the left."""
         heading = math.remainder(self.heading_rad + steps * HEADING_STEP_RAD, math.tau)
         return replace(self, heading_rad=heading)
 
     def towards(self, x_m: float, y_m: float) -> Aim:
-        """Return it with the heading to another place."""
         return replace(self, heading_rad=math.atan2(y_m - self.y_m, x_m - self.x_m))
 
     def shapes(self, dots_per_m: float) -> list[Shape]:
@@ -82,15 +72,14 @@ class Aim:
             "orientation": {"x": x, "y": y, "z": z, "w": w},
         }
         header: dict[str, Value] = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
-        if self.kind is AimKind.GOAL:
+        if self.kind is GOAL:
             return {"header": header, "pose": pose}
         covariance = [COVARIANCE.get(place, 0.0) for place in range(36)]
         return {"header": header, "pose": {"pose": pose, "covariance": covariance}}
 
 
 def armed_words(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str, str]) -> str:
-    """Return what is armed, where it is, who would hear it, and what to do."""
-    what = _("GOAL") if aim.kind is AimKind.GOAL else _("INITIAL POSE")
+    what = _("GOAL") if aim.kind is GOAL else _("INITIAL POSE")
     where = place_words(aim, frame)
     heard = ", ".join(listeners) if listeners else _("nobody listens")
     how = _("Press, drag, let go: published. Or arrows, Ctrl+arrows, {enter}. {escape} leaves.").format(
@@ -100,7 +89,6 @@ def armed_words(aim: Aim, frame: str, listeners: Sequence[str], keys: tuple[str,
 
 
 def place_words(aim: Aim, frame: str) -> str:
-    """Return place and heading."""
     return _("x {x}  y {y} m, heading {degrees}° in {frame}").format(
         x=decimal(f"{aim.x_m:.2f}"),
         y=decimal(f"{aim.y_m:.2f}"),
@@ -110,7 +98,6 @@ def place_words(aim: Aim, frame: str) -> str:
 
 
 def sent_words(aim: Aim, frame: str, listeners: int) -> str:
-    """Return what was published, and how many heard it."""
     where = place_words(aim, frame)
     if listeners:
         return _("Published on {topic}: {where}.").format(topic=aim.kind.topic, where=where)

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
-from graph.data import Trouble
-from robot.topics import ROBOT_DESCRIPTION, SONAR_FRAMES
+from graph.data import GraphUpdate, TopicRow, Trouble
 from space.reading.fields import NotDrawnError
-from space.reading.kinds import KINDS, LayerKind, NewestReader
+from space.reading.kinds import KINDS, LayerKind, LayerReader, NewestReader
 from space.reading.robot import ModelReader
 from space.reading.scans import read_sonar
+from text.robot import robot
+from text.ros_names import ROBOT_DESCRIPTION
 from text.sentences import reason_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from graph.data import GraphUpdate, TopicRow
-    from space.reading.kinds import LayerReader
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 FLOAT, TEXT = "std_msgs/msg/Float32", "std_msgs/msg/String"
@@ -33,7 +28,6 @@ class SpaceLayer:
     """What one topic shows."""
 
     def __init__(self, topic: str, type_name: str, kind: LayerKind) -> None:
-        """Begin without a message, shown as soon as there is one."""
         self.topic = topic
         self.type_name = type_name
         self.on = True
@@ -44,9 +38,7 @@ class SpaceLayer:
         self.refused = ""
         """Why the newest message cannot be drawn."""
         self.apart = ""
-        """Why what it shows cannot be placed."""
         self.frame = ""
-        """The frame of what came last."""
         self.heard = False
 
     @property
@@ -134,6 +126,6 @@ def _kind_of(topic: str, type_names: Iterable[str]) -> tuple[str, LayerKind] | N
             return name, KINDS[name]
         if name == TEXT and topic == ROBOT_DESCRIPTION:
             return name, LayerKind(ModelReader)
-        if name == FLOAT and topic in SONAR_FRAMES:
-            return name, LayerKind(partial(NewestReader, partial(read_sonar, frame_id=SONAR_FRAMES[topic])))
+        if name == FLOAT and topic in robot().frames:
+            return name, LayerKind(partial(NewestReader, partial(read_sonar, frame_id=robot().frames[topic])))
     return None

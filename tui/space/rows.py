@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rich.cells import cell_len
+from textual.events import Click
 
 from graph.data import Trouble
 from text.figures import figure
@@ -17,8 +18,6 @@ from tui.widgets.rows import MARK, Cell, Column, Row, Rows
 from tui.widgets.trouble import advice, no_data_words
 
 if TYPE_CHECKING:
-    from textual.events import Click
-
     from tui.space.layers import SpaceLayer
     from tui.space.stage import Stage
 
@@ -42,7 +41,6 @@ class LayerRows(Rows):
         """Topic to when its rate was shown first, and what was shown."""
 
     def on_click(self, event: Click) -> None:
-        """Choose a layer; on its mark, show or hide it."""
         super().on_click(event)
         if event.x <= MARK + 2 and event.chain == 1:
             self.action_open()
@@ -86,7 +84,6 @@ def _head(key: str, name: str, rate: str, *, on: bool) -> Row:
 
 
 def _short(name: str, width: int) -> str:
-    """Return a name of at most this many cells; ends differ more than beginnings."""
     name = plain(name)
     return name if cell_len(name) <= width else "…" + name[1 - max(2, width) :]
 
@@ -98,7 +95,6 @@ def _words(words: str, width: int) -> tuple[Row, ...]:
 
 
 def _rest_of(layer: SpaceLayer) -> str:
-    """Return since when a layer rests; empty if it does not."""
     if not layer.rests or layer.row is None:
         return ""
     age_s = layer.row.age_s
@@ -106,7 +102,6 @@ def _rest_of(layer: SpaceLayer) -> str:
 
 
 def trouble_of_layer(layer: SpaceLayer) -> str:
-    """Return why a layer is not in the picture, or not all of it; empty if it is."""
     row = layer.row
     if row is not None and row.trouble is not None and not layer.rests:
         headline, detail = advice(row)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.widgets import Static
@@ -17,27 +20,19 @@ from text.plain import plain
 from tui import clock
 from tui.actions import bindings
 from tui.dialogs.choice import ChoiceScreen
+from tui.emergency.messages import EmergencyChanged
 from tui.frame.screen import DeckScreen
 from tui.panels.panel import row_of
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.space.actions import SPACE_ACTIONS, disarm, publish_aim
-from tui.space.aiming import LONGEST, Aim, AimKind, armed_words, sent_words
+from tui.space.aiming import GOAL, LONGEST, Aim, AimKind, armed_words, sent_words
 from tui.space.layers import CLOUD
 from tui.space.rows import FRAMES, LayerRows
 from tui.space.stage import Stage
 from tui.space.view import SpaceView
-from tui.widgets.scale_bar import scale_bar
+from tui.widgets.canvas import scale_bar
 from tui.widgets.trouble import listeners
 from tui.yaml_form.words import reason_words
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from space.drawing.picture import CellPicture, SpaceCamera
-    from tui.emergency.messages import EmergencyChanged
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
 SENT_WITHIN_S = 3.0
 PERIOD_S, CLOUD_PERIOD_S = 0.1, 0.06
@@ -77,29 +72,19 @@ class SpaceScreen(DeckScreen):
         self.stage = Stage()
 
     def compose_body(self) -> ComposeResult:
-        """The picture with its lines, and the layers."""
         with Horizontal(id="space-body"):
             with Vertical(id="space-picture"):
-                yield SpaceView(self._compose_picture, id="space-view")
+                yield SpaceView(lambda *seen: self.stage.picture(self.view.aim, *seen))
                 yield Static(id="space-status", markup=False)
             yield LayerRows()
         yield Static(id="space-armed", markup=False)
 
-    @property
-    def view(self) -> SpaceView:
-        return self.query_one(SpaceView)
-
-    @property
-    def layer_rows(self) -> LayerRows:
-        return self.query_one(LayerRows)
+    view = getters.query_one(SpaceView)
+    layer_rows = getters.query_one(LayerRows)
 
     @property
     def armed(self) -> bool:
         return self.is_mounted and self.view.aim is not None
-
-    @property
-    def has_layers(self) -> bool:
-        return self.is_mounted
 
     # What is watched
 
@@ -111,9 +96,9 @@ class SpaceScreen(DeckScreen):
         return self.stage.layers.followed() if self.feed.front is self else set()
 
     def on_mount(self) -> None:
-        """Put the keys to the picture."""
         self.view.focus()
-        self._show_lines()
+        self._show_armed()
+        self._show_status()
 
     def on_screen_resume(self) -> None:
         """Forget what was not heard of while another screen was in front."""
@@ -133,10 +118,9 @@ class SpaceScreen(DeckScreen):
             self.stage = Stage()
             self.view.recorded = self.feed.replay is not None
             self.view.fit(None, anew=True)
-            self._show()
+            self.show()
 
     def on_emergency_changed(self, message: EmergencyChanged) -> None:
-        """Disarm once the emergency stop is engaged."""
         if message.emergency.engaged and self.armed:
             self.disarm()
             self.notify(self.refusal, severity="warning", markup=False)
@@ -149,15 +133,15 @@ class SpaceScreen(DeckScreen):
         if came:
             self.topics_changed()
         if self.feed.front is self:
-            self._show()
+            self.show()
 
     def on_language_changed(self, message: LanguageChanged) -> None:
         del message
-        self._show()
+        self.show()
 
     @on(SpaceView.CameraMoved)
     def _camera_moved(self) -> None:
-        self._show(by_user=True)
+        self.show(by_user=True)
 
     @on(SpaceView.PointerMoved)
     def _pointer_moved(self) -> None:
@@ -177,7 +161,6 @@ class SpaceScreen(DeckScreen):
     # Actions
 
     async def ros2_command(self) -> str:
-        """Return what prints the topic of the chosen layer."""
         layer = self.stage.layers.get(self.layer_rows.chosen)
         return "" if layer is None else ros2_words.echo(layer.topic)
 
@@ -185,31 +168,9 @@ class SpaceScreen(DeckScreen):
         self.stage.follow_frame("")
         self.stage.place(clock.now())
         self.view.fit(self.stage.extent(), anew=True)
-        self._show(by_user=True)
+        self.show(by_user=True)
 
-    def choose_follow(self) -> None:
-        """Ask which frame stays in the middle."""
-
-        def take(answer: str | None) -> None:
-            if answer:
-                self.stage.follow_frame(answer.strip())
-                self.view.fits = not self.stage.follow
-                self._show(by_user=True)
-
-        self._ask_frame(lambda: _("Follow a frame"), lambda: _("no frame"), take)
-
-    def choose_fixed(self) -> None:
-        """Ask in which frame everything is drawn."""
-
-        def take(answer: str | None) -> None:
-            if answer:
-                self.disarm()
-                self.stage.wanted_fixed = answer.strip()
-                self.fit()
-
-        self._ask_frame(lambda: _("Fixed frame"), lambda: _("the robot's root"), take)
-
-    def _ask_frame(
+    def ask_frame(
         self, title: Callable[[], str], none: Callable[[], str], take: Callable[[str | None], None]
     ) -> None:
         frames = sorted(self.stage.buffer.frames)
@@ -221,7 +182,6 @@ class SpaceScreen(DeckScreen):
         self.app.push_screen(ChoiceScreen(title, lambda: _("Which frame?"), choices), take)
 
     def toggle_layer(self) -> None:
-        """Show or hide the chosen layer."""
         chosen = self.layer_rows.chosen
         layer = self.stage.layers.get(chosen)
         if chosen == FRAMES:
@@ -230,23 +190,7 @@ class SpaceScreen(DeckScreen):
             layer.on = not layer.on
             if not layer.on:
                 layer.forget()
-        self._layers_changed()
-
-    def only_layer(self) -> None:
-        """Hide all layers but the chosen one."""
-        chosen = self.layer_rows.chosen
-        self.stage.show_frames = chosen == FRAMES
-        for layer in self.stage.layers:
-            layer.on = layer.topic == chosen
-            if not layer.on:
-                layer.forget()
-        self._layers_changed()
-
-    def all_layers(self) -> None:
-        self.stage.show_frames = True
-        for layer in self.stage.layers:
-            layer.on = True
-        self._layers_changed()
+        self.layers_changed()
 
     def topics_changed(self) -> None:
         """Ask for the topics of the layers, and look more often if there is a cloud."""
@@ -254,9 +198,9 @@ class SpaceScreen(DeckScreen):
         self.period_s = CLOUD_PERIOD_S if clouds else PERIOD_S
         super().topics_changed()
 
-    def _layers_changed(self) -> None:
+    def layers_changed(self) -> None:
         self.topics_changed()
-        self._show(by_user=True)
+        self.show(by_user=True)
 
     # Goals. One may move a robot: nothing is published that was not armed, nothing while the emergency stop
     # is engaged or a recording is played, and nothing that the user does not see. Whatever happens, it is
@@ -274,7 +218,6 @@ class SpaceScreen(DeckScreen):
         return ""
 
     def arm(self, kind: AimKind) -> None:
-        """Begin to aim in the middle of the picture, or say why that cannot be."""
         if reason := self.refusal:
             self.notify(reason, severity="warning", markup=False)
             return
@@ -288,7 +231,6 @@ class SpaceScreen(DeckScreen):
         self._aim_changed()
 
     def disarm(self) -> None:
-        """Aim at nothing any more."""
         if self.armed:
             self.view.aim = None
             self._aim_changed()
@@ -303,7 +245,7 @@ class SpaceScreen(DeckScreen):
             self.notify(reason, severity="warning", markup=False)
             return
         sent = graph.ask(Publish(aim.kind.topic, aim.kind.type_name, aim.message(fixed)))
-        if aim.kind is AimKind.GOAL:
+        if aim.kind is GOAL:
             self.stage.sent = fixed, aim
         self._aim_changed()
         self.run_worker(self._confirm(sent, aim, fixed), group="sent")
@@ -311,9 +253,6 @@ class SpaceScreen(DeckScreen):
     async def _confirm(self, sent: Future[int], aim: Aim, fixed: str) -> None:
         try:
             await asyncio.wait_for(asyncio.wrap_future(sent), SENT_WITHIN_S)
-        except asyncio.TimeoutError:
-            seconds = decimal(f"{SENT_WITHIN_S:g}")
-            failure = _("ROS did not accept it within {n} s").format(n=seconds)
         except Exception as error:  # noqa: BLE001 - any failure is reported
             failure = reason_words(error)
         else:
@@ -327,15 +266,12 @@ class SpaceScreen(DeckScreen):
         return listeners(None if update is None else row_of(update, kind.topic))
 
     def _aim_changed(self) -> None:
-        self._show(by_user=True)
+        self.show(by_user=True)
         self.refresh_bindings()
 
     # Display
 
-    def _compose_picture(self, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
-        return self.stage.picture(camera, columns, rows, self.view.aim)
-
-    def _show(self, *, by_user: bool = False) -> None:
+    def show(self, *, by_user: bool = False) -> None:
         if not self.is_mounted:
             return
         view = self.view
@@ -347,7 +283,8 @@ class SpaceScreen(DeckScreen):
         view.renew(by_user=by_user)
         view.show_words(*self._why_empty())
         self.layer_rows.show_stage(self.stage)
-        self._show_lines()
+        self._show_armed()
+        self._show_status()
 
     def _why_empty(self) -> tuple[str, str]:
         if self.stage.buffer.frames or any(layer.heard for layer in self.stage.layers):
@@ -359,10 +296,6 @@ class SpaceScreen(DeckScreen):
             "Nobody publishes frames (/tf), a map, a scan, a cloud, a path or markers. Lesson 6 "
             "and the profile robot do."
         )
-
-    def _show_lines(self) -> None:
-        self._show_armed()
-        self._show_status()
 
     def _show_armed(self) -> None:
         line, aim = self.query_one("#space-armed", Static), self.view.aim

@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from robot.topics import SONAR_FRAMES
-from robot.world.world import Body
+from graph.data import FrameRow, GraphUpdate
 from space.buffer import NoTransformError, TransformBuffer
-from space.drawing.picture import extent_of, picture
-from space.drawing.shapes import Speckles, places
+from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera, extent_of, picture
+from space.drawing.shapes import Shape, Speckles, places
 from space.placing import Placer, frame_shapes
-from space.transform import Transform
+from space.transform import Transform, Vector
+from text.robot import robot
 from text.sentences import say
 from tui.space.layers import SpaceLayers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from graph.data import FrameRow, GraphUpdate
-    from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
-    from space.drawing.shapes import Shape
-    from space.transform import Vector
     from tui.space.aiming import Aim
 
-BODY = Body()
 BASE = "base_link"
 AROUND = 0.05
 """Share of the picture that is left free around everything when it is fitted."""
@@ -33,14 +26,11 @@ LEAST_M = 2.0
 """Less than this is never made to fill the picture."""
 
 
-def _mounts() -> dict[str, tuple[str, Transform]]:
-    """Where the sonars of the course are, for robots that do not publish it."""
-    front, rear = SONAR_FRAMES.values()
-    ahead, behind = BODY.length_m - BODY.behind_m, -BODY.behind_m
-    return {
-        front: (BASE, Transform((ahead, 0.0, 0.0))),
-        rear: (BASE, Transform.from_rpy((behind, 0.0, 0.0), (0.0, 0.0, math.pi))),
-    }
+MOUNTS = {
+    frame: (BASE, Transform.from_rpy((ahead_m, 0.0, 0.0), (0.0, 0.0, heading_rad)))
+    for frame, (ahead_m, heading_rad) in robot().mounts.items()
+}
+"""Where the robot's sonars are, as long as it does not publish that."""
 
 
 class Stage:
@@ -51,7 +41,6 @@ class Stage:
         self.layers = SpaceLayers()
         self.show_frames = True
         self.frames_why = ""
-        """Which frames are not joined to the fixed one."""
         self.wanted_fixed = ""
         """The fixed frame that the user has chosen; empty for the robot's root."""
         self.follow = ""
@@ -60,7 +49,7 @@ class Stage:
         """Where it was when the camera was moved last."""
         self.sent: tuple[str, Aim] | None = None
         """The goal published last, and its frame, until the graph shows it."""
-        self._placer = Placer(_mounts())
+        self._placer = Placer(MOUNTS)
         self._shapes: list[Shape] = []
         self._frames: dict[str, Transform] = {}
 
@@ -91,7 +80,6 @@ class Stage:
             self.buffer.add(newest)
 
     def place(self, now_s: float) -> None:
-        """Place all layers, and note at each what cannot be placed."""
         shown = {layer: layer.reader.shown(now_s) if layer.is_drawn else () for layer in self.layers}
         for layer, drawables in shown.items():
             layer.frame = next((one.frame for one in drawables if one.frame), layer.frame)
@@ -114,7 +102,6 @@ class Stage:
         return None if found is None else found.widened(AROUND, LEAST_M)
 
     def follow_frame(self, frame: str) -> None:
-        """Keep this frame in the middle from now on; none if it is empty."""
         self.follow, self._followed = frame, None
 
     def followed(self, camera: SpaceCamera) -> SpaceCamera:
@@ -129,7 +116,7 @@ class Stage:
         before, self._followed = self._followed or (camera.x_m, camera.y_m, 0.0), at
         return replace(camera, x_m=camera.x_m + at[0] - before[0], y_m=camera.y_m + at[1] - before[1])
 
-    def picture(self, camera: SpaceCamera, columns: int, rows: int, aim: Aim | None) -> CellPicture:
+    def picture(self, aim: Aim | None, camera: SpaceCamera, columns: int, rows: int) -> CellPicture:
         """Return the picture of what was placed last.
 
         The names of frames that matter most come first: what the user has chosen, then what has data.

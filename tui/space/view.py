@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, cast
 
 import numpy as np
@@ -10,34 +11,27 @@ from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
 from textual.binding import Binding, BindingType
+from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp, Resize
 from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
+from textual.timer import Timer
 from textual.widget import Widget
 
 from space.drawing.paints import Tint, rgb_of
-from space.drawing.picture import SpaceCamera
-from tui.widgets.one_style import OneStyle
-from tui.widgets.words import word_strips
+from space.drawing.picture import CellPicture, SpaceBox, SpaceCamera
+from tui.terminal.bandwidth import HasBandwidth
+from tui.widgets.canvas import spans
+from tui.widgets.words import OneStyle, word_strips
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp, Resize
-    from textual.timer import Timer
-
-    from space.drawing.picture import CellPicture, SpaceBox
     from tui.space.aiming import Aim
-    from tui.terminal.bandwidth import HasBandwidth
 
 PAINTED = ("text", "muted", "accent", "second", "good", "warn", "bad", "free", "wall", "maybe")
 ZOOM = 1.25
-"""The factor of one step."""
 PAN_CELLS = 4
 LEAST_DRAG_DOTS = 6.0
 """A shorter way of the mouse is a click, and gives no heading."""
-JUMP = 3
-"""A run of unchanged cells this short is cheaper to redraw than to skip."""
 
 
 class _Drag(NamedTuple):
@@ -93,10 +87,8 @@ class SpaceView(OneStyle, Widget, can_focus=True):
     }
     """
 
-    def __init__(
-        self, compose_picture: Callable[[SpaceCamera, int, int], CellPicture], *, id: str | None = None
-    ) -> None:
-        super().__init__(id=id)
+    def __init__(self, compose_picture: Callable[[SpaceCamera, int, int], CellPicture]) -> None:
+        super().__init__()
         self.camera = SpaceCamera()
         self.aim: Aim | None = None
         """What is aimed; None while nothing is armed."""
@@ -119,12 +111,10 @@ class SpaceView(OneStyle, Widget, can_focus=True):
 
     @property
     def dots(self) -> tuple[int, int]:
-        """Width and height of the picture in dots."""
         return 2 * self.size.width, 4 * self.size.height
 
     @property
     def pointer_place(self) -> tuple[float, float] | None:
-        """Where the mouse points, in the fixed frame; None if it is elsewhere."""
         return None if self._pointer is None else self.camera.floor_at(*self._pointer, *self.dots)
 
     def show_words(self, headline: str, detail: str = "") -> None:
@@ -159,7 +149,8 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             self.refresh()
             return
         self._picture = now
-        if not self._words[0] and (regions := _regions(now.changed(had))):
+        regions = [Region(column, row, cells, 1) for row, column, cells in spans(now.changed(had))]
+        if not self._words[0] and regions:
             self.refresh(*regions)
 
     def _look_again(self) -> None:
@@ -167,18 +158,15 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self.renew()
 
     def on_resize(self, event: Resize) -> None:
-        """Draw at the new size."""
         del event
         self._fitted = None
         self.post_message(self.CameraMoved())
 
     def on_language_changed(self) -> None:
-        """Draw in the current theme and language."""
         self._theme = None
         self.refresh()
 
     def render_line(self, y: int) -> Strip:
-        """One line of the picture, or of the words in place of it."""
         width, base = self.size.width, self.rich_style
         if self._words[0]:
             strips = word_strips(self._words, width, base, self.app.console, centred=True)
@@ -244,13 +232,11 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self.post_message(self.Aimed(done=False))
 
     def action_turn(self, left: int) -> None:
-        """Turn what is aimed."""
         if self.aim is not None:
             self.aim = self.aim.turned(left)
             self.post_message(self.Aimed(done=False))
 
     def action_closer(self, steps: int) -> None:
-        """Zoom about the middle."""
         self._move(self.camera.zoomed(ZOOM**steps))
 
     def action_zoom(self, steps: int) -> None:
@@ -263,12 +249,10 @@ class SpaceView(OneStyle, Widget, can_focus=True):
     # Mouse
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
-        """Zoom in about the pointer."""
         event.stop()
         self._zoom_about(ZOOM, event.x, event.y)
 
     def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
-        """Zoom out about the pointer."""
         event.stop()
         self._zoom_about(1 / ZOOM, event.x, event.y)
 
@@ -278,7 +262,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self._move(self.camera.zoomed(factor, spot[0] - width / 2, spot[1] - height / 2))
 
     def on_mouse_down(self, event: MouseDown) -> None:
-        """Begin to pan, or to aim."""
         self.focus()
         spot = _middle_of(event.x, event.y)
         if self.aim is not None:
@@ -289,7 +272,6 @@ class SpaceView(OneStyle, Widget, can_focus=True):
         self.capture_mouse()
 
     def on_mouse_move(self, event: MouseMove) -> None:
-        """Pan or aim while a button is held, and say where the pointer is."""
         spot = _middle_of(event.x, event.y)
         drag = self._drag
         if spot != self._pointer:
@@ -302,14 +284,11 @@ class SpaceView(OneStyle, Widget, can_focus=True):
             return
         self._drag = drag._replace(x=spot[0], y=spot[1])
         if drag.aims:
-            self._aim_at(spot, drag)
+            if self.aim is not None and math.dist(spot, drag.begun) > 0:
+                self.aim = self.aim.towards(*self.camera.floor_at(*spot, *self.dots))
+                self.post_message(self.Aimed(done=False))
         else:
             self._move(self.camera.panned(right, down))
-
-    def _aim_at(self, spot: tuple[float, float], drag: _Drag) -> None:
-        if self.aim is not None and math.dist(spot, drag.begun) > 0:
-            self.aim = self.aim.towards(*self.camera.floor_at(*spot, *self.dots))
-            self.post_message(self.Aimed(done=False))
 
     def on_mouse_up(self, event: MouseUp) -> None:
         """End the drag; one that was long enough to give a heading ends the aiming as well."""
@@ -327,15 +306,3 @@ class SpaceView(OneStyle, Widget, can_focus=True):
 
 def _middle_of(x: float, y: float) -> tuple[float, float]:
     return 2 * math.floor(x) + 1.0, 4 * math.floor(y) + 2.0
-
-
-def _regions(changed: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -> list[Region]:
-    """Return the cells that changed as spans; those close together are one."""
-    regions = []
-    for row in np.flatnonzero(changed.any(axis=1)).tolist():
-        columns = np.flatnonzero(changed[row])
-        breaks = np.flatnonzero(np.diff(columns) > JUMP)
-        starts = columns[np.concatenate(([0], breaks + 1))].tolist()
-        ends = columns[np.concatenate((breaks, [len(columns) - 1]))].tolist()
-        regions += [Region(a, row, b - a + 1, 1) for a, b in zip(starts, ends, strict=True)]
-    return regions

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
 from text.i18n import N_
+from text.robot import robot
 from tui.actions.action import Action, Announce, actions_of
-from tui.teleop.keys import Move
 
 if TYPE_CHECKING:
     from tui.session.feed import Feed
     from tui.teleop.widget import TeleopPanel
+
+
+class Move(Enum):
+    """What a key asks for."""
+
+    FORWARD = "forward"
+    BACK = "back"
+    LEFT = "left"
+    RIGHT = "right"
 
 
 class CanDrive(Protocol):
@@ -34,7 +44,7 @@ on_screen: Announce[CanDrive] = Announce()
     means="drive",
     footer=True,
     anywhere=True,
-    when=lambda screen: screen.feed.link is not None and screen.feed.replay is None,
+    when=lambda screen: bool(robot().keys) and screen.feed.link is not None and screen.feed.replay is None,
 )
 async def open_teleop(screen: CanDrive) -> None:
     await screen.open_teleop()

@@ -10,12 +10,12 @@ is held.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
 from robot.limits import SPEED, STEERING
 from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP
 from robot.words import STOP, DriveSetpoint
+from tui.teleop.actions import Move
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,15 +29,6 @@ NEXT_HOLD_S = 0.25
 STEP = 0.05
 """Step by which the limits change, in m/s and rad."""
 LEAST = 0.05
-
-
-class Move(Enum):
-    """What a key asks for."""
-
-    FORWARD = "forward"
-    BACK = "back"
-    LEFT = "left"
-    RIGHT = "right"
 
 
 DRIVES = {Move.FORWARD: 1, Move.BACK: -1}

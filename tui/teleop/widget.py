@@ -13,9 +13,10 @@ from textual.message import Message
 
 from graph.observer.requests import Hold, LetGo, PrepareHold
 from graph.publishing.dead_man_switch import HeldCommand
-from robot.safety.gate_report import Gate, gate_in
-from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP, SAFETY_STATE, WHEEL_COMMANDS
+from robot.topics import DRIVE, DRIVE_SAFE, DRIVE_TELEOP, WHEEL_COMMANDS
 from robot.words import STOP, DriveSetpoint
+from safety.gate_report import Gate, gate_in
+from safety.topics import SAFETY_STATE
 from text.i18n import N_, _
 from text.plain import plain
 from tui import clock
@@ -25,8 +26,8 @@ from tui.frame.actions.app import emergency_release
 from tui.frame.host import Host, host_of
 from tui.panels.panel import is_published, newest
 from tui.panels.wheels import WheelsReading, wheels_in
-from tui.teleop.actions import MOVES, TELEOP_ACTIONS, open_teleop
-from tui.teleop.keys import DRIVE_TYPE, NOTHING, RATE_HZ, Move, Route, TeleopLimits, command, route
+from tui.teleop.actions import MOVES, TELEOP_ACTIONS, Move, open_teleop
+from tui.teleop.keys import DRIVE_TYPE, NOTHING, RATE_HZ, Route, TeleopLimits, command, route
 from tui.teleop.view import Driving, drawn
 from tui.widgets.drawing import Drawing, Line
 from tui.yaml_form.words import reason_words

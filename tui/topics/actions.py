@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from tui.topics.screen import TopicsScreen
 
 action: Announce[TopicsScreen] = Announce()
-_PLOT_LABELS: dict[str, str] = {"none": N_("Plot"), "beside": N_("Larger"), "alone": N_("Hide plot")}
+_PLOT_LABELS = {"none": N_("Plot"), "beside": N_("Larger"), "alone": N_("Hide plot")}
 
 
 @action(
@@ -23,10 +23,10 @@ _PLOT_LABELS: dict[str, str] = {"none": N_("Plot"), "beside": N_("Larger"), "alo
     footer=True,
     priority=True,
     anywhere=True,
-    when=lambda screen: screen.focused is not screen.filter and not screen.plotting.covers_all,
+    when=lambda screen: screen.focused is not screen.filter and not screen.plot_covers_all,
 )
 def filter_topics(screen: TopicsScreen) -> None:
-    screen.focus_filter()
+    screen.set_focus(screen.filter)
 
 
 @action(
@@ -36,10 +36,10 @@ def filter_topics(screen: TopicsScreen) -> None:
     N_("Freeze message and plot, or follow the newest."),
     footer=True,
     anywhere=True,
-    label=lambda screen: N_("Resume") if screen.plotting.paused else N_("Pause"),
+    label=lambda screen: N_("Resume") if screen.paused else N_("Pause"),
 )
 def pause_topic(screen: TopicsScreen) -> None:
-    screen.plotting.toggle_pause()
+    screen.toggle_pause()
 
 
 @action(
@@ -50,11 +50,12 @@ def pause_topic(screen: TopicsScreen) -> None:
     means="another view",
     footer=True,
     anywhere=True,
-    when=lambda screen: screen.plotting.plot.has_value,
-    label=lambda screen: _PLOT_LABELS[screen.plotting.place.value],
+    when=lambda screen: screen.plot.has_value,
+    label=lambda screen: _PLOT_LABELS[screen.plot_place],
 )
 def show_plot(screen: TopicsScreen) -> None:
-    screen.show_plot_next()
+    places = [*_PLOT_LABELS]
+    screen.show_plot(places[(places.index(screen.plot_place) + 1) % len(places)])
 
 
 @action(
@@ -64,7 +65,7 @@ def show_plot(screen: TopicsScreen) -> None:
     N_("Plot the number at the cursor against time, or remove it from the plot."),
     footer=True,
     anywhere=True,
-    when=lambda screen: not screen.plotting.covers_all and (screen.detail.front is screen.detail.echo or None),
+    when=lambda screen: not screen.plot_covers_all and (screen.detail.front is screen.detail.echo or None),
     shown=lambda screen: screen.has_message,
 )
 def toggle_plot_field(screen: TopicsScreen) -> None:
@@ -79,10 +80,10 @@ def toggle_plot_field(screen: TopicsScreen) -> None:
     means="time axis",
     footer=True,
     anywhere=True,
-    when=lambda screen: screen.plotting.plot.display,
+    when=lambda screen: screen.plot.display,
 )
 def next_plot_window(screen: TopicsScreen) -> None:
-    screen.plotting.plot.next_window()
+    screen.plot.next_window()
 
 
 @action(
@@ -91,15 +92,14 @@ def next_plot_window(screen: TopicsScreen) -> None:
     N_("Clear plot"),
     N_("Remove all fields from the plot."),
     anywhere=True,
-    when=lambda screen: screen.plotting.plot.has_value,
+    when=lambda screen: screen.plot.has_value,
 )
 def clear_plot(screen: TopicsScreen) -> None:
-    screen.plotting.plot.clear()
+    screen.plot.clear()
 
 
 def _shows_table(screen: TopicsScreen) -> bool | None:
-    """Not while the plot covers everything."""
-    return not screen.plotting.covers_all
+    return not screen.plot_covers_all
 
 
 @action(
@@ -124,10 +124,11 @@ def copy_message(screen: TopicsScreen) -> None:
     footer=True,
     priority=True,
     anywhere=True,
-    when=lambda screen: bool(screen.table.chosen) and not screen.plotting.covers_all,
+    when=lambda screen: bool(screen.table.chosen) and not screen.plot_covers_all,
 )
 def filter_messages(screen: TopicsScreen) -> None:
-    screen.filter_messages()
+    screen.detail.show_as_endpoints(False)
+    screen.detail.filter.open()
 
 
 @action(
@@ -137,7 +138,7 @@ def filter_messages(screen: TopicsScreen) -> None:
     N_("Show an image as a picture, or as a tree of its fields."),
     footer=True,
     anywhere=True,
-    when=lambda screen: screen.shows_image and not screen.plotting.covers_all,
+    when=lambda screen: screen.shows_image and not screen.plot_covers_all,
 )
 def picture_or_tree(screen: TopicsScreen) -> None:
     screen.toggle_picture()
@@ -205,10 +206,12 @@ def show_housekeeping(screen: TopicsScreen) -> None:
     N_("Publish a message to the selected topic or to a new one, once or at a rate."),
     footer=True,
     anywhere=True,
-    when=lambda screen: screen.can_publish,
+    when=lambda screen: screen.feed.graph is not None and screen.feed.replay is None,
 )
 def open_publish(screen: TopicsScreen) -> None:
-    screen.open_publish()
+    from tui.topics.publish import PublishDialog
+
+    screen.app.push_screen(PublishDialog(screen.table.chosen_row, lambda: screen.detail.sample))
 
 
 TOPICS_ACTIONS = actions_of(__name__)

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
+from graph.data import Sample
 from graph.messages.condition import LONGEST, ConditionError, MessageFilter
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from textual.app import ComposeResult
-
-    from graph.data import Sample
 
 LONGEST_WORDS = 200
 
@@ -61,9 +56,7 @@ class EchoFilter(Horizontal):
     def on_mount(self) -> None:
         self.on_language_changed()
 
-    @property
-    def field(self) -> Field:
-        return self.query_one(Field)
+    field = getters.query_one(Field)
 
     @property
     def in_force(self) -> bool:
@@ -74,17 +67,14 @@ class EchoFilter(Horizontal):
         return self.in_force and self._condition is None
 
     def open(self) -> None:
-        """Show the field and focus it."""
         self.add_class("-open")
         self.field.focus()
 
     def close(self) -> None:
-        """Stop filtering and hide the field."""
         self.field.value = ""
         self.remove_class("-open")
 
     def show_topic(self, topic: str) -> None:
-        """Use the expression of another topic."""
         if topic == self._topic:
             return
         self._topic = topic

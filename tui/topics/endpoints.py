@@ -4,28 +4,22 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar, NamedTuple
 
 from rich.cells import cell_len
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from graph.qos_compatibility import LEASE, LIVELINESS, mismatches
+from graph.data import EndpointInfo, TopicRow
+from graph.qos import LEASE, LIVELINESS, Mismatch, mismatches
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit
 from tui.widgets.figures import UNKNOWN, seconds_text
-from tui.widgets.qos_words import pair_words
-from tui.widgets.trouble import names
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from graph.data import EndpointInfo, TopicRow
-    from graph.qos_compatibility import Mismatch
+from tui.widgets.trouble import names, pair_words
 
 
 class TopicEndpoints(VerticalScroll, can_focus=True):
@@ -50,7 +44,6 @@ class TopicEndpoints(VerticalScroll, can_focus=True):
         yield Static(markup=False)
 
     def show(self, row: TopicRow | None) -> None:
-        """Show the endpoints of this topic; another one is shown from its beginning."""
         other = row is None or self._row is None or row.name != self._row.name
         self._row = row
         self._fold()
@@ -61,15 +54,12 @@ class TopicEndpoints(VerticalScroll, can_focus=True):
         self._fold()
 
     def on_resize(self) -> None:
-        """Wrap to the new width."""
         self._fold()
 
     def watch_show_vertical_scrollbar(self) -> None:
-        """Wrap with or without the scroll bar."""
         self._fold()
 
     def on_show(self) -> None:
-        """Wrap what was set while the widget was hidden."""
         self._fold()
 
     def _fold(self) -> None:
@@ -92,53 +82,38 @@ LONGEST_NAME = 256
 WIDEST_NODE = 44
 
 
-@dataclass(frozen=True)
-class Pair:
-    """A publisher and a subscriber that the middleware does not connect, and by which policy."""
-
-    publisher: EndpointInfo
-    subscriber: EndpointInfo
-    mismatch: Mismatch
-
-
-def mismatched_pairs(row: TopicRow) -> list[Pair]:
-    """Return every incompatible pair of the same type."""
-    return [
-        Pair(publisher, subscriber, found)
+def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
+    """Return the topic's endpoints in this width: what to fix, publishers, subscribers."""
+    pairs = [
+        (publisher, subscriber, found)
         for publisher in row.published_by
         for subscriber in row.subscribed_by
         if subscriber.type_name == publisher.type_name
         for found in mismatches([publisher], [subscriber])
     ]
-
-
-def endpoint_lines(row: TopicRow, width: int) -> list[Line]:
-    """Return the topic's endpoints in this width: what to fix, publishers, subscribers."""
-    pairs = mismatched_pairs(row)
     disagree = len(_types(row)) > 1
     columns = columns_for(width - MARK)
     lines = [*_types_lines(row, width)] if disagree else []
-    lines += _pair_lines(pairs, width)
+    lines += _pair_lines([found for _publisher, _subscriber, found in pairs], width)
     if not lines and row.published_by and row.subscribed_by:
         lines.append([Ink(f"{FITS} ", "good"), Ink(_("every subscriber hears every publisher"))])
-    for is_publisher, ends in ((True, row.published_by), (False, row.subscribed_by)):
-        lines.append([])
-        lines.append(_title(is_publisher, len(ends), columns))
+    for side, ends in enumerate((row.published_by, row.subscribed_by)):
+        title = _("Subscribers") if side else _("Publishers")
+        titles = [f"{title} ({len(ends)})", *(column.title for column in columns[1:])]
+        lines += [[], [Ink(" " * MARK), *_cells(titles, columns, ["strong", *["muted"] * len(columns)])]]
         for end in ends:
-            at = [pair for pair in pairs if end is (pair.publisher if is_publisher else pair.subscriber)]
-            bad = frozenset(_column(pair.mismatch.policy) for pair in at)
+            # The lease is shown beside the kind.
+            at = (pair[2].policy for pair in pairs if end is pair[side])
+            bad = {LIVELINESS if policy == LEASE else policy for policy in at}
             lines += _end_lines(end, columns, bad, width, with_type=disagree)
-        if is_publisher and row.own_publishers:
+        if not side and row.own_publishers:
             lines.append([Ink(" " * MARK), Ink(_("Deck itself publishes here"))])
         elif not ends:
-            nobody = _("nobody publishes") if is_publisher else _("nobody listens")
-            lines.append([Ink(" " * MARK), Ink(nobody, "muted")])
-    return [*lines, [], *_notes(row, width)]
-
-
-def _column(policy: str) -> str:
-    """Return the column that shows the policy: the lease is shown beside the kind."""
-    return LIVELINESS if policy == LEASE else policy
+            lines.append([Ink(" " * MARK), Ink(_("nobody listens") if side else _("nobody publishes"), "muted")])
+    lines.append([])
+    if any(not end.history or not end.liveliness for end in (*row.published_by, *row.subscribed_by)):
+        lines += _wrapped("", _("“–” is unknown: the middleware does not send it."), width, "muted")
+    return lines
 
 
 def _types(row: TopicRow) -> list[str]:
@@ -160,9 +135,9 @@ def _types_lines(row: TopicRow, width: int) -> Iterator[Line]:
         yield from _wrapped("", f"{plain(type_name, LONGEST)}: {', '.join(parts)}", width)
 
 
-def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
+def _pair_lines(found: Sequence[Mismatch], width: int) -> list[Line]:
     # If a node has two identical endpoints, its pairs produce the same text.
-    told = list(dict.fromkeys(pair_words(pair.mismatch) for pair in pairs))
+    told = list(dict.fromkeys(map(pair_words, found)))
     lines: list[Line] = []
     for words in told[:MOST_PAIRS]:
         lines += _wrapped(MISMATCH, words, width, "bad")
@@ -173,22 +148,16 @@ def _pair_lines(pairs: Sequence[Pair], width: int) -> list[Line]:
     return lines
 
 
-def _title(is_publisher: bool, count: int, columns: Sequence[EndpointColumn]) -> Line:
-    title = _("Publishers") if is_publisher else _("Subscribers")
-    texts = [f"{title} ({count})", *(column.title for column in columns[1:])]
-    return [Ink(" " * MARK), *_cells(texts, columns, ["strong", *["muted"] * len(columns)])]
-
-
 def _end_lines(
-    end: EndpointInfo, columns: Sequence[EndpointColumn], bad: frozenset[str], width: int, *, with_type: bool
+    end: EndpointInfo, columns: Sequence[EndpointColumn], bad: set[str], width: int, *, with_type: bool
 ) -> Iterator[Line]:
     mark = Ink(f"{MISMATCH} ", "bad") if bad else Ink(" " * MARK)
-    looks = ["bad" if column.id in bad else "" for column in columns]
+    looks = ["bad" if column.title in bad else "" for column in columns]
     texts = [column.text(end) for column in columns]
     yield [mark, *_cells(texts, columns, looks)]
     below = [texts[0]] if cell_len(texts[0]) > columns[0].width else []
     below += [plain(end.type_name, LONGEST)] if with_type else []
-    below += [f"{column.title} {column.text(end)}" for column in left_over(columns)]
+    below += [f"{column.title} {column.text(end)}" for column in POLICIES[len(columns) - 1 :]]
     if below:
         yield from _wrapped("", " · ".join(below), width, "muted", indent=2 * MARK)
 
@@ -201,13 +170,6 @@ def _cells(texts: Sequence[str], columns: Sequence[EndpointColumn], looks: Seque
     ]
 
 
-def _notes(row: TopicRow, width: int) -> Iterator[Line]:
-    ends = (*row.published_by, *row.subscribed_by)
-    if any(not end.history or not end.liveliness for end in ends):
-        words = _("“–” is unknown: the middleware does not send it.")
-        yield from _wrapped("", words, width, "muted")
-
-
 def _wrapped(mark: str, text: str, width: int, look: str = "", *, indent: int = MARK) -> Iterator[Line]:
     """Yield a mark and a wrapped text beside it; if there is a mark, it carries the look."""
     room = max(8, width - indent)
@@ -216,13 +178,10 @@ def _wrapped(mark: str, text: str, width: int, look: str = "", *, indent: int = 
         yield [head, Ink(part, "" if mark else look)]
 
 
-@dataclass(frozen=True)
-class EndpointColumn:
-    """One column; `id` is the name of the policy if it shows one."""
+class EndpointColumn(NamedTuple):
+    """One column; the names of the policies are those of ROS in every language, because users type them."""
 
-    id: str
     title: str
-    """The names of the policies are those of ROS in every language, because users type them."""
     width: int
     text: Callable[[EndpointInfo], str]
 
@@ -237,7 +196,6 @@ def history_text(end: EndpointInfo) -> str:
 
 
 def time_text(seconds: float | None) -> str:
-    """Return a time that was requested or offered, or say that there is none."""
     return _("none") if seconds is None else seconds_text(seconds)
 
 
@@ -249,14 +207,14 @@ def liveliness_text(end: EndpointInfo) -> str:
     return end.liveliness + lease
 
 
-NODE = EndpointColumn("node", "", 20, lambda end: plain(localized(end.called), LONGEST_NAME))
+NODE = EndpointColumn("", 20, lambda end: plain(localized(end.called), LONGEST_NAME))
 POLICIES = (
-    EndpointColumn("reliability", "reliability", 11, lambda end: end.reliability or UNKNOWN),
-    EndpointColumn("durability", "durability", 15, lambda end: end.durability or UNKNOWN),
-    EndpointColumn("history", "history", 13, history_text),
-    EndpointColumn("deadline", "deadline", 8, lambda end: time_text(end.deadline_s)),
-    EndpointColumn("lifespan", "lifespan", 8, lambda end: time_text(end.lifespan_s)),
-    EndpointColumn("liveliness", "liveliness", 22, liveliness_text),
+    EndpointColumn("reliability", 11, lambda end: end.reliability or UNKNOWN),
+    EndpointColumn("durability", 15, lambda end: end.durability or UNKNOWN),
+    EndpointColumn("history", 13, history_text),
+    EndpointColumn("deadline", 8, lambda end: time_text(end.deadline_s)),
+    EndpointColumn("lifespan", 8, lambda end: time_text(end.lifespan_s)),
+    EndpointColumn("liveliness", 22, liveliness_text),
 )
 """In the order on the screen; the last ones are dropped first when room is short."""
 
@@ -267,9 +225,4 @@ def columns_for(width: int) -> tuple[EndpointColumn, ...]:
     while kept and NODE.width + sum(column.width + 1 for column in kept) > width:
         kept.pop()
     spare = width - sum(column.width + 1 for column in kept)
-    return (replace(NODE, width=max(1, min(spare, WIDEST_NODE))), *kept)
-
-
-def left_over(columns: Sequence[EndpointColumn]) -> tuple[EndpointColumn, ...]:
-    """Return the policies without a column."""
-    return POLICIES[len(columns) - 1 :]
+    return (NODE._replace(width=max(1, min(spare, WIDEST_NODE))), *kept)

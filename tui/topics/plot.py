@@ -8,28 +8,22 @@ the axis keeps its numbers while they suit, and what has not changed is not sent
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.cells import cell_len
 from textual.message import Message
 
+from graph.data import GraphUpdate, Sample
 from text.i18n import _, decimal
 from text.plain import plain
-from tui.topics.plot_history import History, PlotField, Series
+from tui.topics.plot_history import History, HistoryDots, Numbers, PlotField, Series
 from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import Drawing, Ink, Line, fit
 from tui.widgets.figures import UNKNOWN
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from graph.data import GraphUpdate, Sample
-    from tui.topics.plot_history import HistoryDots, Numbers
 
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
@@ -54,8 +48,8 @@ class TopicPlot(Drawing):
     TopicPlot { height: 1fr; }
     """
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self._series: list[Series] = []
         self._window_s = WINDOWS_S[1]
         self._now_s = 0.0
@@ -68,12 +62,10 @@ class TopicPlot(Drawing):
 
     @property
     def topics(self) -> set[str]:
-        """The topics of which every message is needed."""
         return {series.field.topic for series in self._series}
 
     @property
     def is_full(self) -> bool:
-        """Whether no more fields can be added."""
         return len(self._series) >= len(NAMES)
 
     @property
@@ -117,7 +109,6 @@ class TopicPlot(Drawing):
         self.post_message(self.PlotChanged())
 
     def take(self, update: GraphUpdate) -> None:
-        """Add the messages of an update and redraw what has changed."""
         self._now_s = update.time_s
         for series in self._series:
             for sample in update.samples.get(series.field.topic, ()):
@@ -126,7 +117,6 @@ class TopicPlot(Drawing):
             self.redraw()
 
     def next_window(self) -> None:
-        """Show a longer window, or the shortest after the longest."""
         at = WINDOWS_S.index(self._window_s)
         self._window_s = WINDOWS_S[(at + 1) % len(WINDOWS_S)]
         self._axis = None
@@ -140,7 +130,6 @@ class TopicPlot(Drawing):
             self.post_message(self.PlotChanged())
 
     def draw(self, width: int, height: int) -> list[Line]:
-        """Draw a title, the legend, and the curves between their axes."""
         end_s = self._now_s if self._paused_s is None else self._paused_s
         title = f"{_('Plot')} · {window_text(self._window_s)}"
         if self.paused:
@@ -200,7 +189,6 @@ class TopicPlot(Drawing):
             ends[free[0]] = Ink(series.letter, series.look)
 
     def _times(self, left: int, across: int) -> Line:
-        """Seconds before now below the plot, at round places."""
         text = " " * (left + across + 1)
         ticks_s = _TICKS_S[self._window_s] * (1 if across >= WIDE else 2)
         for tick in range(int(self._window_s / ticks_s) + 1):
@@ -249,7 +237,6 @@ class ValueAxis:
         return [self.step * number for number in range(first, last + 1)]
 
     def label(self, value: float) -> str:
-        """Return a tick with the decimals of its step, or with an exponent if that is long."""
         if abs(value) < self.step / 1e3:
             return "0"
         widest = max(abs(self.low), abs(self.high))
@@ -260,7 +247,6 @@ class ValueAxis:
 
 
 def decimals(step: float) -> int:
-    """Return the number of decimals for a number with this step."""
     return max(0, -math.floor(math.log10(step) + 1e-9))
 
 
@@ -309,7 +295,6 @@ def heights(values: Numbers, axis: ValueAxis, dots: int) -> Numbers:
 
 
 def curve(columns: HistoryDots, axis: ValueAxis, rows: int) -> NDArray[np.bool_]:
-    """Which dots are on in this many rows of cells."""
     dots = rows * DOTS_DOWN
     top, bottom = _reach(columns, axis, dots)
     at = np.arange(dots)[:, None]
@@ -351,7 +336,6 @@ def _join(top: list[float], bottom: list[float], start: tuple[int, float], end: 
 FIGURE = 9
 LEAST_NAME = 18
 FIGURES = 5
-"""Significant digits."""
 HUGE, TINY = 1e6, 1e-4
 
 
@@ -393,7 +377,6 @@ def legend_in_short(series: Sequence[Series], width: int, title: str) -> list[Li
 
 
 def number_text(number: float | None) -> str:
-    """A number with five significant digits; nan and infinities by name."""
     if number is None:
         return UNKNOWN
     if not math.isfinite(number):

@@ -5,18 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, SupportsFloat, TypeAlias
+from typing import Any, NamedTuple, SupportsFloat, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+from graph.data import Sample, Value
 from text.plain import plain
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from graph.data import Sample, Value
-
-    Numbers: TypeAlias = NDArray[np.float64]
+Numbers: TypeAlias = NDArray[np.float64]
 
 SLOT_S = 0.025
 """Finer than a dot of the shortest window on the widest terminal."""
@@ -44,9 +41,8 @@ class History:
         self._begin()
 
     def _begin(self) -> None:
-        self._low = np.full(SLOTS, np.nan)
-        self._high = np.full(SLOTS, np.nan)
-        self._last = np.full(SLOTS, np.nan)
+        self._numbers = np.full((3, SLOTS), np.nan)
+        """Lowest, highest and last of each slot."""
         self._broken = np.zeros(SLOTS, np.bool_)
         self._newest = -1
         """Number of the newest slot, counted from the epoch; -1 before the first message."""
@@ -74,26 +70,21 @@ class History:
         at = slot % SLOTS
         self._broken[at] |= self._gap
         self._gap = False
-        self._low[at] = np.fmin(self._low[at], number)
-        self._high[at] = np.fmax(self._high[at], number)
-        self._last[at] = number
+        low, high, _last = self._numbers[:, at]
+        self._numbers[:, at] = np.fmin(low, number), np.fmax(high, number), number
 
     def range(self, end_s: float, window_s: float) -> tuple[float, float] | None:
-        """The lowest and the highest number in the window that ends at this time."""
-        first, after = self._slots(end_s, window_s)
-        low, high = self._part(self._low, first, after), self._part(self._high, first, after)
+        _first, (low, high, _last), _broken = self._window(end_s, window_s)
         seen = np.isfinite(low)
         return (float(low[seen].min()), float(high[seen].max())) if seen.any() else None
 
     def columns(self, end_s: float, window_s: float, count: int) -> HistoryDots:
         """The window that ends at this time, as `count` dots."""
-        first, after = self._slots(end_s, window_s)
+        first, (low, high, last), broken = self._window(end_s, window_s)
         width_s = window_s / count
         # Counted from the epoch: a dot keeps its slots while the window moves by whole dots.
         starts = [round((end_s - (count - n) * width_s) / SLOT_S) for n in range(count)]
-        low, high = self._part(self._low, first, after), self._part(self._high, first, after)
-        last, broken = self._part(self._last, first, after), self._part(self._broken, first, after)
-        edges = np.clip(np.array([*starts, after]) - first, 0, after - first)
+        edges = np.clip(np.array([*starts, first + len(low)]) - first, 0, len(low))
         out = HistoryDots(
             np.full(count, np.nan), np.full(count, np.nan), np.full(count, np.nan),
             np.zeros(count, np.bool_),
@@ -108,27 +99,21 @@ class History:
         np.logical_or.at(out.broken, dots, broken[seen])
         return out
 
-    def _slots(self, end_s: float, window_s: float) -> tuple[int, int]:
+    def _window(self, end_s: float, window_s: float) -> tuple[int, Numbers, NDArray[np.bool_]]:
+        """The number of the first slot, and all slots of it; blank if they are too old or in the future."""
         after = int(end_s / SLOT_S) + 1
-        return after - min(SLOTS, int(window_s / SLOT_S)), after
-
-    def _part(self, ring: NDArray[np.generic], first: int, after: int) -> NDArray[np.generic]:
-        """The slots from `first` to before `after`; blank if they are too old or in the future."""
-        slots = np.arange(first, after)
-        part = ring[slots % SLOTS]
+        slots = np.arange(after - min(SLOTS, int(window_s / SLOT_S)), after)
         known = (slots <= self._newest) & (slots > self._newest - SLOTS)
-        blank = False if ring.dtype == np.bool_ else np.nan
-        return np.where(known, part, blank)
+        numbers, broken = self._numbers[:, slots % SLOTS], self._broken[slots % SLOTS]
+        return int(slots[0]), np.where(known, numbers, np.nan), known & broken
 
     def _go_to(self, slot: int) -> None:
-        """Clear the slots between the newest and this one."""
         if self._newest < 0:
             self._newest = slot
         steps = min(SLOTS, slot - self._newest)
         if steps > 0:
             fresh = np.arange(slot - steps + 1, slot + 1) % SLOTS
-            for ring in (self._low, self._high, self._last):
-                ring[fresh] = np.nan
+            self._numbers[:, fresh] = np.nan
             self._broken[fresh] = False
             self._newest = slot
 
@@ -160,17 +145,13 @@ class PlotField(NamedTuple):
 
     def number(self, message: Mapping[str, Value]) -> float | None:
         """The field's number, including nan and infinities; None if there is none."""
-        value: object = message
+        value: Any = message
         for step in self.path:
-            if isinstance(value, Mapping):
-                if step not in value:
-                    return None
+            if isinstance(value, bytes):
+                return None
+            try:
                 value = value[step]
-            elif isinstance(step, int) and _is_indexed(value):
-                if not 0 <= step < len(value):  # type: ignore[arg-type]
-                    return None
-                value = value[step]  # type: ignore[index]
-            else:
+            except (LookupError, TypeError):
                 return None
         return as_number(value)
 
@@ -187,22 +168,15 @@ class Series:
     """Whether the newest message had a number in this field."""
 
     def take(self, sample: Sample) -> None:
-        """Add the number from one message."""
         number = self.field.number(sample.value)
         self.is_number = number is not None
         self.history.add(sample.received_s - sample.age_s, number)
 
 
 def as_number(value: object) -> float | None:
-    """A number or a boolean as a float; None for anything else."""
     if not isinstance(value, SupportsFloat) or hasattr(value, "__len__"):
         return None
     try:
         return float(value)
     except OverflowError:
         return math.inf
-
-
-def _is_indexed(value: object) -> bool:
-    """Whether it is an array, of numbers (numpy) or of anything else except characters."""
-    return hasattr(value, "__len__") and not isinstance(value, (str, bytes))

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.cells import cell_len
-from textual import on
+from textual import getters, on, work
+from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.widgets import Input, Static
 
+from graph.data import Publication, Sample, TopicRow, Value
 from graph.messages.browse import interfaces
 from graph.messages.yaml_form import filled
 from graph.messages.yaml_text import is_cut
 from graph.observer.requests import Publish, StartPublishing, StopPublishing
 from graph.publishing.outbox import LEAST_HZ, MOST_HZ
 from text import ros2_words
-from text.i18n import _, decimal, localized, ngettext
+from text.i18n import N_, _, decimal, localized, ngettext
 from text.plain import plain
 from text.ros_names import TOPIC_NAME
 from tui.actions import bindings
@@ -31,195 +35,20 @@ from tui.panels.panel import row_of
 from tui.topics.actions_of_publish import PUBLISH_ACTIONS
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row, Rows
-from tui.widgets.working import Working
 from tui.yaml_form.form import YamlForm
 from tui.yaml_form.type_field import TypeField
 from tui.yaml_form.words import reason_words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from concurrent.futures import Future
-
-    from textual.app import ComposeResult
-
-    from graph.data import Publication, Sample, TopicRow, Value
     from tui.session.ports import GraphLink
 
 
-class PublishTarget(Vertical, Working):
-    """Two lines; the second is completed from the installed types."""
-
-    DEFAULT_CSS = """
-    PublishTarget {
-        height: auto;
-        .target-row { height: auto; }
-        .target-label { width: 8; color: $text-muted; }
-        #target-topic { width: 1fr; }
-    }
-    """
-
-    def compose(self) -> ComposeResult:
-        """The topic above its type."""
-        with Horizontal(classes="target-row"):
-            yield Static(id="target-topic-label", classes="target-label", markup=False)
-            yield Field(id="target-topic", compact=True, select_on_focus=False)
-        with Horizontal(classes="target-row"):
-            yield Static(id="target-type-label", classes="target-label", markup=False)
-            yield TypeField()
-
-    def on_mount(self) -> None:
-        """Read the installed types."""
-        self.on_language_changed()
-        self.run_worker(self._learn_types(), group="types")
-
-    @property
-    def field(self) -> Input:
-        return self.query_one("#target-topic", Input)
-
-    @property
-    def type(self) -> TypeField:
-        return self.query_one(TypeField)
-
-    @property
-    def topic(self) -> str:
-        """The topic that was entered; a relative name is below the root."""
-        name = self.field.value.strip()
-        return name if not name or name.startswith(("/", "~")) else f"/{name}"
-
-    @property
-    def is_name(self) -> bool:
-        return TOPIC_NAME.fullmatch(self.topic) is not None
-
-    def on_language_changed(self) -> None:
-        self.query_one("#target-topic-label", Static).update(_("Topic"))
-        self.query_one("#target-type-label", Static).update(_("Type"))
-        self.field.placeholder = _("/name of an existing or a new topic")
-        self.type.field.placeholder = _("words of its name: float32, twist")
-
-    async def _learn_types(self) -> None:
-        names = await asyncio.to_thread(interfaces)
-        self.type.know(tuple(name for name in names if "/msg/" in name))
-
-
 LONGEST = 300
-
-
-class PublishRate(Horizontal):
-    """A field for the rate, and on its right a remark in the current language."""
-
-    DEFAULT_CSS = """
-    PublishRate {
-        height: auto;
-        #rate-label { width: 8; color: $text-muted; }
-        #rate-hz { width: 8; }
-        #rate-unit { width: auto; padding: 0 2 0 0; color: $text-muted; }
-        #rate-said { width: 1fr; height: auto; max-height: 3; }
-        #rate-said.-good { color: $text-success; }
-        #rate-said.-bad { color: $text-error; text-style: bold; }
-    }
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._words: Callable[[], str] = lambda: ""
-        self._look = ""
-
-    def compose(self) -> ComposeResult:
-        yield Static(id="rate-label", markup=False)
-        yield Field("10", id="rate-hz", compact=True, select_on_focus=False)
-        yield Static(id="rate-unit", markup=False)
-        yield Static(id="rate-said", markup=False)
-
-    def on_mount(self) -> None:
-        self.on_language_changed()
-
-    @property
-    def field(self) -> Input:
-        return self.query_one(Input)
-
-    @property
-    def says_bad(self) -> bool:
-        """Whether the remark reports a failure."""
-        return self._look == "bad"
-
-    def rate_hz(self) -> float | None:
-        """Return the rate; if it is invalid, say what is allowed and return None."""
-        try:
-            hz = float(self.field.value.replace(",", "."))
-        except ValueError:
-            hz = 0.0
-        if LEAST_HZ <= hz <= MOST_HZ:
-            return hz
-        self.tell(_limits, "bad")
-        self.field.focus()
-        return None
-
-    def tell(self, words: Callable[[], str], look: str = "") -> None:
-        """Show a remark as `good`, `bad` or neither; `words` is called again in a new language."""
-        self._words, self._look = words, look
-        shown = self.query_one("#rate-said", Static)
-        shown.set_class(look == "good", "-good")
-        shown.set_class(look == "bad", "-bad")
-        shown.update(plain(words(), LONGEST))
-
-    def on_language_changed(self) -> None:
-        self.query_one("#rate-label", Static).update(_("Rate"))
-        self.query_one("#rate-unit", Static).update(_("Hz"))
-        self.tell(self._words, self._look)
-
-
-def _limits() -> str:
-    limits = {"least": decimal(f"{LEAST_HZ:g}"), "greatest": f"{MOST_HZ:g}"}
-    return _("The rate is {least} to {greatest} Hz.").format(**limits)
-
-
 MOST_LINES = 5
-
-
-class PublicationList(Rows):
-    """One row for each; Enter stops the chosen one. It is hidden while there is none."""
-
-    DEFAULT_CSS = """
-    PublicationList { display: none; border-top: solid $panel; }
-    PublicationList.-some { display: block; }
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._shown: tuple[Publication, ...] = ()
-
-    def show_publications(self, publications: tuple[Publication, ...]) -> None:
-        self._shown = publications
-        columns = (
-            Column(_("Publishing")),
-            Column(_("Hz"), 7, right=True),
-            Column(_("Sent"), max(8, cell_len(_("Sent"))), right=True),
-            Column(_("Subscribers"), 11, right=True),
-        )
-        self.show(columns, [_row(one) for one in publications])
-        self.set_class(bool(publications), "-some")
-        # The header and the line above it are in addition to the rows.
-        self.styles.height = min(MOST_LINES, len(publications)) + 2
-
-    @property
-    def chosen_number(self) -> int | None:
-        return int(self.chosen) if self._shown and self.chosen else None
-
-
-def _row(one: Publication) -> Row:
-    if one.error:
-        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(localized(one.error), 200)}", "bad")
-        return Row(str(one.number), (words,))
-    heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
-    cells = (Cell(plain(one.topic, 200)), Cell(decimal(f"{one.hz:g}")), Cell(str(one.sent)), heard)
-    return Row(str(one.number), cells)
-
-
 LOOK_S = 0.25
 DONE_WITHIN_S = 8.0
 """Time limit; a new publisher may wait four seconds for its subscribers."""
 LONGEST_ARRAY = 1000
-"""Elements of an array that are copied into the form."""
 
 
 class PublishDialog(Dialog[None]):
@@ -231,7 +60,17 @@ class PublishDialog(Dialog[None]):
         align: center top; background: $background;
         TitleBar { dock: top; }
         #dialog { width: 120; height: 1fr; max-height: 100%; padding: 0 1; }
+        .row { height: auto; }
+        .label { width: 8; color: $text-muted; }
+        #target-topic { width: 1fr; }
         YamlForm { border-top: solid $panel; border-bottom: solid $panel; }
+        #rate-hz { width: 8; }
+        #rate-unit { width: auto; padding: 0 2 0 0; color: $text-muted; }
+        #rate-said { width: 1fr; height: auto; max-height: 3; }
+        #rate-said.-good { color: $text-success; }
+        #rate-said.-bad { color: $text-error; text-style: bold; }
+        #publications { display: none; border-top: solid $panel; }
+        #publications.-some { display: block; }
     }
     """
 
@@ -241,48 +80,85 @@ class PublishDialog(Dialog[None]):
         self._row = row
         self._sample = sample
         self._listed: tuple[Publication, ...] | None = None
+        self._said: tuple[Callable[[], str], str] = (lambda: "", "")
+        """The remark beside the rate, in the current language, and its look."""
 
     def title_words(self) -> str:
         return _("Publish a message")
 
     def words(self) -> Content:
-        """Return nothing: there is no text."""
         return Content("")
 
     def compose(self) -> ComposeResult:
-        """Topic and type, the form, the rate, and what is being published."""
         yield TitleBar()
         with Vertical(id="dialog"):
-            yield PublishTarget()
+            with Horizontal(classes="row"):
+                yield Static(id="topic-label", classes="label", markup=False)
+                yield Field(id="target-topic", compact=True, select_on_focus=False)
+            with Horizontal(classes="row"):
+                yield Static(id="type-label", classes="label", markup=False)
+                yield TypeField()
             yield YamlForm(submits=False)
-            yield PublishRate()
-            yield PublicationList()
+            with Horizontal(classes="row"):
+                yield Static(id="rate-label", classes="label", markup=False)
+                yield Field("10", id="rate-hz", compact=True, select_on_focus=False)
+                yield Static(id="rate-unit", markup=False)
+                yield Static(id="rate-said", markup=False)
+            yield Rows(id="publications")
             yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the chosen topic, and update the list of publications regularly."""
         # A tab would replace this screen and put its own above the topics.
         self.query_one(TitleBar).disabled = True
         self.redraw()
+        self.run_worker(self._learn_types(), group="types")
         self.set_interval(LOOK_S, self._look)
         if self._row is None:
-            self.target.field.focus()
+            self.topic_field.focus()
             return
-        self.target.field.value = self._row.name
+        self.topic_field.value = self._row.name
         self._follow_topic()
         self.form.editor.focus()
 
-    @property
-    def target(self) -> PublishTarget:
-        return self.query_one(PublishTarget)
+    async def _learn_types(self) -> None:
+        names = await asyncio.to_thread(interfaces)
+        self.type.know(tuple(name for name in names if "/msg/" in name))
+
+    topic_field = getters.query_one("#target-topic", Input)
 
     @property
-    def rate(self) -> PublishRate:
-        return self.query_one(PublishRate)
+    def topic(self) -> str:
+        """The topic that was entered; a relative name is below the root."""
+        name = self.topic_field.value.strip()
+        return name if not name or name.startswith(("/", "~")) else f"/{name}"
+
+    type = getters.query_one(TypeField)
+    rate_field = getters.query_one("#rate-hz", Input)
+    form = getters.query_one(YamlForm)
 
     @property
-    def form(self) -> YamlForm:
-        return self.query_one(YamlForm)
+    def chosen_number(self) -> int | None:
+        chosen = self.query_one("#publications", Rows).chosen
+        return int(chosen) if self._listed and chosen else None
+
+    def tell(self, words: Callable[[], str], look: str = "") -> None:
+        """Show a remark as `good`, `bad` or neither; `words` is called again in a new language."""
+        self._said = words, look
+        shown = self.query_one("#rate-said", Static)
+        shown.set_class(look == "good", "-good")
+        shown.set_class(look == "bad", "-bad")
+        shown.update(plain(words(), LONGEST))
+
+    def _rate_hz(self) -> float | None:
+        try:
+            hz = float(self.rate_field.value.replace(",", "."))
+        except ValueError:
+            hz = 0.0
+        if LEAST_HZ <= hz <= MOST_HZ:
+            return hz
+        self.tell(_limits, "bad")
+        self.rate_field.focus()
+        return None
 
     @property
     def is_publishing(self) -> bool:
@@ -294,9 +170,15 @@ class PublishDialog(Dialog[None]):
         sample = self._sample()
         if sample is None or not self.is_mounted:
             return None
-        return sample if sample.topic == self.target.topic else None
+        return sample if sample.topic == self.topic else None
 
     def redraw(self) -> None:
+        labels = {"topic-label": _("Topic"), "type-label": _("Type"), "rate-label": _("Rate"), "rate-unit": _("Hz")}
+        for name, words in labels.items():
+            self.query_one(f"#{name}", Static).update(words)
+        self.topic_field.placeholder = _("/name of an existing or a new topic")
+        self.type.field.placeholder = _("words of its name: float32, twist")
+        self.tell(*self._said)
         dialog = self.query_one("#dialog")
         dialog.border_title = Content(self.title_words())
         stop = f"{self.deck.keys_of(emergency_stop)[-1]} {_(emergency_stop.title)}"
@@ -305,162 +187,167 @@ class PublishDialog(Dialog[None]):
         self._look()
 
     async def ros2_command(self) -> str:
-        """Return what publishes the message, at a rate if one is going on for this topic."""
         value = self.form.value
-        if value is None or not self.target.is_name:
+        if value is None or TOPIC_NAME.fullmatch(self.topic) is None:
             return ""
-        rates = [one.hz for one in self._listed or () if one.topic == self.target.topic]
+        rates = [one.hz for one in self._listed or () if one.topic == self.topic]
         hz = rates[0] if rates else None
-        return ros2_words.pub(self.target.topic, self.form.type_name, value, hz)
+        return ros2_words.pub(self.topic, self.form.type_name, value, hz)
 
-    def publish_once(self) -> None:
-        """Publish the message, and say how many received it."""
+    @work(group="publish")
+    async def publish_once(self) -> None:
         ready = self._ready()
-        if ready is not None:
-            graph, topic, value = ready
-            self.rate.tell(lambda: _("Publishing…"))
-            future = graph.ask(Publish(topic, self.form.type_name, value))
-            self.run_worker(self._confirm_once(topic, future), group="publish")
+        if ready is None:
+            return
+        graph, topic, value = ready
+        self.tell(lambda: _("Publishing…"))
+        heard = await self._outcome(graph.ask(Publish(topic, self.form.type_name, value)))
+        if heard:
+            self.tell(lambda: _got(heard), "good")
+        elif heard is not None:
+            self.tell(lambda: _("Sent, but nobody listens to {topic}.").format(topic=topic))
 
-    def publish_at_rate(self) -> None:
+    @work(group="publish")
+    async def publish_at_rate(self) -> None:
         """Publish the message periodically, replacing an earlier publication on the same topic."""
-        hz = self.rate.rate_hz()
+        hz = self._rate_hz()
         ready = None if hz is None else self._ready()
-        if hz is not None and ready is not None:
-            graph, topic, value = ready
-            before = [one.number for one in self._listed or () if one.topic == topic]
-            future = graph.ask(StartPublishing(topic, self.form.type_name, value, hz))
-            self.run_worker(self._confirm_rate(topic, hz, before, future), group="publish")
+        if hz is None or ready is None:
+            return
+        graph, topic, value = ready
+        before = [one.number for one in self._listed or () if one.topic == topic]
+        if await self._outcome(graph.ask(StartPublishing(topic, self.form.type_name, value, hz))) is None:
+            return
+        for number in before:
+            graph.ask(StopPublishing(number))
+        words = N_("Publishing to {topic} at {hz} Hz.")
+        self.tell(lambda: _(words).format(topic=topic, hz=decimal(f"{hz:g}")), "good")
+        self._look()
 
     def stop_chosen(self) -> None:
-        number = self.query_one(PublicationList).chosen_number
+        number = self.chosen_number
         graph = self.deck.feed.graph
         if number is None or graph is None:
             return
         stopped = next((one.topic for one in self._listed or () if one.number == number), "")
         graph.ask(StopPublishing(number))
-        self.rate.tell(lambda: _("Stopped: {topic}").format(topic=stopped))
+        self.tell(lambda: _("Stopped: {topic}").format(topic=stopped))
 
     def take_message(self) -> None:
-        """Fill the form with the newest message."""
         sample = self.newest
         if sample is None:
             return
         text = filled(sample.type_name, sample.value, most=LONGEST_ARRAY)
-        self.target.type.set(sample.type_name)
+        self.type.set(sample.type_name)
         self.form.load(sample.type_name, text)
         if is_cut(sample.value, LONGEST_ARRAY):
-            self.rate.tell(lambda: _("Its long arrays were cut: see the remarks."))
+            self.tell(lambda: _("Its long arrays were cut: see the remarks."))
         else:
-            self.rate.tell(lambda: _("Filled in from the newest message."))
+            self.tell(lambda: _("Filled in from the newest message."))
 
     def leave(self) -> None:
         """Close the list of types if it is open, otherwise the dialog."""
-        if self.target.type.is_listing:
-            self.target.type.close()
+        if self.type.is_listing:
+            self.type.close()
         else:
             self.dismiss(None)
 
     @on(Input.Changed, "#target-topic")
     def _follow_topic(self) -> None:
-        row = self._known(self.target.topic)
+        update = self.deck.feed.update
+        row = None if update is None else row_of(update, self.topic)
         if row is not None and row.type_names and row.type_names[0] != self.form.type_name:
-            self.target.type.set(row.type_names[0])
+            self.type.set(row.type_names[0])
             self.form.load(row.type_names[0])
         self.refresh_bindings()
 
     @on(Input.Submitted, "#target-topic")
     def _topic_done(self) -> None:
-        (self.form.editor if self.form.type_name else self.target.type.field).focus()
+        (self.form.editor if self.form.type_name else self.type.field).focus()
 
     @on(Input.Submitted, "#rate-hz")
     def _rate_done(self) -> None:
         self.publish_at_rate()
 
     @on(TypeField.TypeChosen)
-    def _type_chosen(self, message: TypeField.TypeChosen) -> None:
-        if message.type_name != self.form.type_name:
-            self.form.load(message.type_name)
-        if self.target.type.field.has_focus:
+    def _type_chosen(self) -> None:
+        if self.type.value != self.form.type_name:
+            self.form.load(self.type.value)
+        if self.type.field.has_focus:
             self.form.editor.focus()
 
-    @on(PublicationList.Opened)
+    @on(Rows.Opened, "#publications")
     def _publication_opened(self) -> None:
         self.stop_chosen()
 
     @on(YamlForm.Checked)
     def _checked(self) -> None:
-        if self.form.error is None and self.rate.says_bad:
-            self.rate.tell(lambda: "")
-
-    async def _confirm_once(self, topic: str, future: Future[int]) -> None:
-        heard = await self._outcome(future)
-        if heard is None:
-            return
-        if heard:
-            self.rate.tell(
-                lambda: ngettext("Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard).format(
-                    n=heard
-                ),
-                "good",
-            )
-        else:
-            self.rate.tell(lambda: _("Sent, but nobody listens to {topic}.").format(topic=topic))
-
-    async def _confirm_rate(self, topic: str, hz: float, before: list[int], future: Future[int]) -> None:
-        if await self._outcome(future) is None:
-            return
-        graph = self.deck.feed.graph
-        for number in before if graph is not None else ():
-            graph.ask(StopPublishing(number))  # type: ignore[union-attr]
-        words = _("Publishing to {topic} at {hz} Hz.")
-        self.rate.tell(lambda: words.format(topic=topic, hz=decimal(f"{hz:g}")), "good")
-        self._look()
+        if self.form.error is None and self._said[1] == "bad":
+            self.tell(lambda: "")
 
     async def _outcome(self, future: Future[int]) -> int | None:
         """Wait for the result; if there is none, say why."""
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), DONE_WITHIN_S)
-        except asyncio.TimeoutError:
-            words = _("ROS did not accept it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
-            self.rate.tell(lambda: words, "bad")
         except Exception as error:  # noqa: BLE001 - any failure is reported
             reason = reason_words(error)
-            self.rate.tell(lambda: _("Not sent: {reason}").format(reason=reason), "bad")
+            self.tell(lambda: _("Not sent: {reason}").format(reason=reason), "bad")
         return None
 
     def _ready(self) -> tuple[GraphLink, str, Mapping[str, Value]] | None:
-        """Return graph, topic and message, or say what is missing and focus it."""
         graph = self.deck.feed.graph
-        topic = self.target.topic
+        topic = self.topic
         if graph is None:
-            self.rate.tell(lambda: _("Not sent: no lesson is running."), "bad")
-        elif not self.target.is_name:
-            self.rate.tell(lambda: _("Not a topic name: letters, digits and _ between /."), "bad")
-            self.target.field.focus()
-        elif not self.form.type_name or self.target.type.value != self.form.type_name:
-            self.rate.tell(lambda: _("Choose the type of {topic}.").format(topic=topic), "bad")
-            self.target.type.field.focus()
+            self.tell(lambda: _("Not sent: no lesson is running."), "bad")
+        elif TOPIC_NAME.fullmatch(self.topic) is None:
+            self.tell(lambda: _("Not a topic name: letters, digits and _ between /."), "bad")
+            self.topic_field.focus()
+        elif not self.form.type_name or self.type.value != self.form.type_name:
+            self.tell(lambda: _("Choose the type of {topic}.").format(topic=topic), "bad")
+            self.type.field.focus()
         else:
             value = self.form.value
             if value is not None:
                 return graph, topic, value
-            self.rate.tell(lambda: _("Not sent: the error is shown below the form."), "bad")
+            self.tell(lambda: _("Not sent: the error is shown below the form."), "bad")
             self.form.go_to_problem()
         return None
 
-    def _known(self, topic: str) -> TopicRow | None:
-        update = self.deck.feed.update
-        return None if update is None else row_of(update, topic)
-
     def _look(self) -> None:
-        """Update the list of publications, and whether the robot is held."""
         update = self.deck.feed.update
         publications = () if update is None else update.publications
         if publications != self._listed:
             had = self.is_publishing
             self._listed = publications
-            self.query_one(PublicationList).show_publications(publications)
+            columns = (
+                Column(_("Publishing")),
+                Column(_("Hz"), 7, right=True),
+                Column(_("Sent"), max(8, cell_len(_("Sent"))), right=True),
+                Column(_("Subscribers"), 11, right=True),
+            )
+            rows = self.query_one("#publications", Rows)
+            rows.show(columns, [_row(one) for one in publications])
+            rows.set_class(bool(publications), "-some")
+            # The header and the line above it are in addition to the rows.
+            rows.styles.height = min(MOST_LINES, len(publications)) + 2
             if had != self.is_publishing:
                 self.refresh_bindings()
         title.show(self.query_one(TitleBar), self.deck, "topics")
+
+
+def _got(heard: int) -> str:
+    return ngettext("Sent: {n} subscriber got it.", "Sent: {n} subscribers got it.", heard).format(n=heard)
+
+
+def _limits() -> str:
+    limits = {"least": decimal(f"{LEAST_HZ:g}"), "greatest": f"{MOST_HZ:g}"}
+    return _("The rate is {least} to {greatest} Hz.").format(**limits)
+
+
+def _row(one: Publication) -> Row:
+    if one.error:
+        words = Cell(f"✗ {plain(one.topic, 100)}: {plain(localized(one.error), 200)}", "bad")
+        return Row(str(one.number), (words,))
+    heard = Cell(str(one.subscribers), "" if one.subscribers else "warn")
+    cells = (Cell(plain(one.topic, 200)), Cell(decimal(f"{one.hz:g}")), Cell(str(one.sent)), heard)
+    return Row(str(one.number), cells)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
+from textual.timer import Timer
 from textual.widgets import Input, Static
 
+from graph.data import Sample, TopicRow
 from graph.housekeeping import is_housekeeping
 from graph.qos import to_hear
 from text import ros2_words
@@ -16,22 +19,14 @@ from text.i18n import N_, _, ngettext
 from tui.actions import bindings
 from tui.echo.tree import EchoTree
 from tui.frame.screen import DeckScreen
+from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.topics.actions import TOPICS_ACTIONS
-from tui.topics.detail import TopicDetail
+from tui.topics.detail import TopicDetail, carries_images, is_image
 from tui.topics.echo_filter import EchoFilter
-from tui.topics.pictures import TopicPictures, carries_images, is_image
 from tui.topics.plot import TopicPlot
-from tui.topics.plotting import PlotPlace, Plotting
-from tui.topics.table import TopicsTable
-from tui.topics.words import why_empty
+from tui.topics.plot_history import PlotField
+from tui.topics.table import TopicsTable, why_empty
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-    from textual.timer import Timer
-
-    from graph.data import Sample, TopicRow
-    from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 
 SETTLED_S = 0.12
 """How long a choice must stand before its topic is subscribed, so that moving through the list
@@ -100,11 +95,8 @@ class TopicsScreen(DeckScreen):
         super().__init__()
         self.table: TopicsTable = TopicsTable()
         self.detail: TopicDetail = TopicDetail()
-        self.plot = TopicPlot()
-        self.plotting: Plotting = Plotting(self, self.table, self.detail, self.plot)
-        self._pictures = TopicPictures(self.detail, self._is_wanted, lambda: self.table.chosen_row)
+        self.plot: TopicPlot = TopicPlot()
         self._rates_s = 0.0
-        """When the rates were last shown."""
         self._settling: Timer | None = None
         self._offered_with_message = False
         """Whether the keys were last updated with a message on the screen."""
@@ -113,7 +105,6 @@ class TopicsScreen(DeckScreen):
         """What would have been shown while another screen was in front."""
 
     def compose_body(self) -> ComposeResult:
-        """The filter above table and message."""
         with Horizontal(id="topics-bar"):
             yield Field(id="topics-filter", compact=True, select_on_focus=False)
             yield Static(id="topics-count", markup=False)
@@ -122,9 +113,7 @@ class TopicsScreen(DeckScreen):
             yield self.detail
             yield self.plot
 
-    @property
-    def filter(self) -> Input:
-        return self.query_one("#topics-filter", Input)
+    filter: getters.query_one[Input] = getters.query_one("#topics-filter", Input)
 
     def watch_topics(self) -> set[str]:
         """The chosen topic; of one with images only its messages as a tree."""
@@ -155,7 +144,6 @@ class TopicsScreen(DeckScreen):
         self._label()
 
     def on_graph_changed(self, message: GraphChanged) -> None:
-        """Show rates, and the newest message of the chosen topic."""
         update = message.update
         self.plot.take(update)
         samples = update.samples.get(self.table.chosen, ())
@@ -177,7 +165,6 @@ class TopicsScreen(DeckScreen):
             self.refresh_bindings()
 
     def on_session_changed(self, message: SessionChanged) -> None:
-        """Forget the topics of a session that has ended."""
         del message
         if self.feed.link is None:
             self._listed = ()
@@ -192,7 +179,7 @@ class TopicsScreen(DeckScreen):
     @on(TopicsTable.Highlighted)
     def _chosen(self) -> None:
         self.detail.show_topic(self.table.chosen_row)
-        self.plotting.mark_fields()
+        self.detail.echo.mark(self.plot.marks(self.table.chosen))
         self._keep_pace()
         self._offered_with_message = self.has_message
         self.refresh_bindings()
@@ -234,8 +221,8 @@ class TopicsScreen(DeckScreen):
     @on(TopicPlot.PlotChanged)
     def _plot_changed(self) -> None:
         if not self.plot.has_value:
-            self.show_plot(PlotPlace.NONE)
-        self.plotting.mark_fields()
+            self.show_plot("none")
+        self.detail.echo.mark(self.plot.marks(self.table.chosen))
         self.refresh_bindings()
         self.topics_changed()
 
@@ -249,8 +236,8 @@ class TopicsScreen(DeckScreen):
 
     def key_escape(self) -> None:
         """Leave the filter and show every topic again, or leave the message or the plot."""
-        if self.plotting.covers_all:
-            self.show_plot(PlotPlace.BESIDE)
+        if self.plot_covers_all:
+            self.show_plot("beside")
         if self.focused in (self.filter, self.table):
             self.filter.value = ""
         if self.focused is self.detail.filter.field:
@@ -268,20 +255,11 @@ class TopicsScreen(DeckScreen):
         # A screen that was just created has to receive its topics first.
         self.call_later(self.table.choose, topic)
 
-    def focus_filter(self) -> None:
-        self.set_focus(self.filter)
-
-    def filter_messages(self) -> None:
-        self.detail.show_as_endpoints(False)
-        self.detail.filter.open()
-
     def toggle_housekeeping(self) -> None:
-        """Show or hide topics of ROS itself."""
         order = self.table.order
         self.table.reorder(replace(order, housekeeping=not order.housekeeping))
 
     def toggle_endpoints(self) -> None:
-        """Show the endpoints of the chosen topic with their QoS, or its message."""
         self.detail.show_as_endpoints(not self.detail.as_endpoints)
         self._keep_pace()
         self.topics_changed()
@@ -292,7 +270,6 @@ class TopicsScreen(DeckScreen):
         return carries_images(self.table.chosen_row)
 
     def toggle_picture(self) -> None:
-        """Show an image as a picture, or as a tree."""
         if self.detail.as_endpoints:
             self.detail.show_as_endpoints(False)
         else:
@@ -300,35 +277,48 @@ class TopicsScreen(DeckScreen):
         self._keep_pace()
         self.topics_changed()
 
-    def show_plot(self, place: PlotPlace) -> None:
-        """Show the plot in this place, possibly over a picture."""
-        self.plotting.show(place)
-        self._keep_pace()
-
-    def show_plot_next(self) -> None:
-        """Show the plot in the next of its places."""
-        places = list(PlotPlace)
-        self.show_plot(places[(places.index(self.plotting.place) + 1) % len(places)])
-
-    def toggle_field(self) -> None:
-        """Add the number at the cursor to the plot, or remove it."""
-        if self.plotting.toggle_field() and self.plotting.place is PlotPlace.NONE:
-            self.show_plot(PlotPlace.BESIDE)
+    @property
+    def plot_place(self) -> str:
+        """`none`, `beside` (below the message or the table) or `alone`; the style sheet goes by the classes."""
+        if not self.has_class("-plot"):
+            return "none"
+        return "alone" if self.has_class("-plot-alone") else "beside"
 
     @property
-    def can_publish(self) -> bool:
-        """Whether there is a graph to publish to; a recording accepts nothing."""
-        return self.feed.graph is not None and self.feed.replay is None
+    def plot_covers_all(self) -> bool:
+        return self.plot_place == "alone"
 
-    def open_publish(self) -> None:
-        """Open the dialog that publishes, for the chosen topic."""
-        from tui.topics.publish import PublishDialog
+    def show_plot(self, place: str) -> None:
+        self.set_class(place != "none", "-plot")
+        self.set_class(place == "alone", "-plot-alone")
+        if place != "alone" and self.focused is None:
+            self.table.focus()
+        self.refresh_bindings()
+        self._keep_pace()
 
-        row = self.table.chosen_row
-        self.app.push_screen(PublishDialog(row, lambda: self.detail.sample))
+    def toggle_field(self) -> None:
+        echo = self.detail.echo
+        field = PlotField(self.table.chosen, echo.at_cursor or ())
+        refusal = ""
+        if not field.topic or not field.path or echo.message is None or field.number(echo.message) is None:
+            refusal = _("Put the cursor on a number first: Tab goes to the message.")
+        elif self.plot.is_full and field not in self.plot.fields:
+            refusal = _("There is no room for more fields: remove one first.")
+        if refusal:
+            self.notify(refusal, severity="warning", markup=False)
+        elif self.plot.toggle(field, self.detail.sample) and self.plot_place == "none":
+            self.show_plot("beside")
+
+    @property
+    def paused(self) -> bool:
+        return self.detail.echo.paused or (self.plot.paused and self.plot_place != "none")
+
+    def toggle_pause(self) -> None:
+        paused = not self.paused
+        self.detail.echo.pause(paused)
+        self.plot.pause(paused and self.plot_place != "none")
 
     async def ros2_command(self) -> str:
-        """Return what prints the chosen topic, or the value at the cursor of the message."""
         row = self.table.chosen_row
         if row is None:
             return ros2_words.echo(self.table.chosen) if self.table.chosen else ""
@@ -340,28 +330,25 @@ class TopicsScreen(DeckScreen):
     # Display
 
     def _show_message(self, sample: Sample) -> None:
-        """Show a message of the chosen topic; an image as a picture if requested."""
         first = self.detail.sample is None
         self.detail.show_message(sample)
         if is_image(sample):
             if first:
                 self.detail.show_as_picture(True)
             if self._shows_picture:
-                self._pictures.show(sample)
+                topic = sample.topic
+                self.detail.show_picture(
+                    sample, lambda: self.is_attached and topic == self.table.chosen and self._shows_picture
+                )
         if first:
             self._keep_pace()
 
     @property
     def _shows_picture(self) -> bool:
-        in_front = self.detail.front is self.detail.picture and not self.plotting.covers_all
+        in_front = self.detail.front is self.detail.picture and not self.plot_covers_all
         return in_front and not self.detail.echo.paused
 
-    def _is_wanted(self, sample: Sample) -> bool:
-        """Return whether the sample's topic is still the one shown, as a picture."""
-        return self.is_attached and sample.topic == self.table.chosen and self._shows_picture
-
     def _keep_pace(self) -> None:
-        """Request updates at the rate that the display needs."""
         period_s = LIVELY_S if self._shows_picture else STEADY_S
         if period_s != self.period_s:
             self.period_s = period_s

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
-from rich.cells import cell_len, set_cell_size
+from textual.events import Click
 from textual.message import Message
+from textual.strip import Strip
 
 from graph.data import TopicRow, Trouble
 from graph.housekeeping import is_housekeeping
 from text.figures import elapsed, figure
-from text.i18n import N_, _
+from text.i18n import N_, _, localized
 from text.plain import plain
+from tui.frame import title
+from tui.frame.host import Host
+from tui.topics.actions import show_housekeeping
 from tui.widgets.figures import UNKNOWN, count_text, seconds_text
 from tui.widgets.rows import MARK, Cell, Column, Row, Rows
 from tui.widgets.words import word_strips
-
-if TYPE_CHECKING:
-    from textual.events import Click
-    from textual.strip import Strip
 
 SortKey: TypeAlias = "tuple[float, str]"
 UNITS = (N_("B/s"), N_("kB/s"), N_("MB/s"), N_("GB/s"))
@@ -49,10 +50,11 @@ class TopicColumn:
     """Whether the highest value comes first when sorting by it."""
     least: int = 0
     """Width below which it is left out."""
+    behind: str = ""
+    """A blank after right-aligned figures that a word may follow."""
 
 
 def hz_text(hz: float | None) -> str:
-    """A rate with three significant digits."""
     if hz is None:
         return UNKNOWN
     if hz >= WHOLE_FROM:
@@ -61,7 +63,6 @@ def hz_text(hz: float | None) -> str:
 
 
 def bandwidth_text(bytes_per_s: float | None) -> str:
-    """A bandwidth with three significant digits and its unit."""
     if bytes_per_s is None:
         return UNKNOWN
     value, step = bytes_per_s, 0
@@ -104,7 +105,7 @@ def state_text(row: TopicRow) -> str:
         return _("· waiting")
     if row.trouble is Trouble.QUIET:
         return _("· {age} ago").format(age=age_text(row.age_s))
-    if "types" in row.facts:
+    if len(row.type_names) > 1:
         return _("! types differ")
     return _("! {detail}").format(detail=plain(row.detail, STEP)) if row.detail else ""
 
@@ -124,18 +125,15 @@ def _state_key(row: TopicRow) -> SortKey:
 
 
 def _number(
-    id: str, title: str, width: int, text: Callable[[TopicRow], str], value: Callable[[TopicRow], float]
+    id: str,
+    title: str,
+    width: int,
+    text: Callable[[TopicRow], str],
+    value: Callable[[TopicRow], float],
+    behind: str = "",
 ) -> TopicColumn:
     """A column of figures: the highest value comes first when sorting by it."""
-    return TopicColumn(id, title, width, text, lambda row: (value(row), ""), right=True, falling=True)
-
-
-def _age_key(row: TopicRow) -> SortKey:
-    return (float("inf") if row.age_s is None else row.age_s // 1, "")
-
-
-def _lost_key(row: TopicRow) -> float:
-    return -1.0 if row.lost is None else row.lost
+    return TopicColumn(id, title, width, text, lambda row: (value(row), ""), True, True, behind=behind)
 
 
 COLUMNS = (
@@ -146,13 +144,14 @@ COLUMNS = (
     _number("hz", N_("Hz"), 6, lambda row: hz_text(row.hz), lambda row: _figure(row.hz)),
     _number("bandwidth", N_("Bandwidth"), 10, lambda row: bandwidth_text(row.bytes_per_s),
             lambda row: _figure(row.bytes_per_s)),
-    TopicColumn("age", N_("Age"), 7, lambda row: age_text(row.age_s), _age_key, right=True),
+    TopicColumn("age", N_("Age"), 8, lambda row: age_text(row.age_s),
+                lambda row: (math.inf if row.age_s is None else row.age_s // 1, ""), right=True, behind=" "),
     _number("jitter", N_("Jitter"), 8, lambda row: seconds_text(row.jitter_s), lambda row: _figure(row.jitter_s)),
     _number("latency", N_("Latency"), 9, lambda row: seconds_text(row.latency_s), lambda row: _figure(row.latency_s)),
-    _number("lost", N_("Lost"), 7, lambda row: count_text(row.lost), _lost_key),
+    _number("lost", N_("Lost"), 8, lambda row: count_text(row.lost),
+            lambda row: -1.0 if row.lost is None else row.lost, behind=" "),
     TopicColumn("state", N_("State"), 15, state_text, _state_key),
 )  # fmt: skip
-"""In the order on the screen."""
 
 _EXTRA = frozenset({"jitter", "latency", "lost"})
 """All or none of them, if there is room to spare: they are shown above the message too."""
@@ -162,24 +161,8 @@ _GIVEN_UP = ("type", "subscribers", "publishers", "bandwidth", "age", "state", "
 """The order in which columns are dropped when room is short."""
 
 
-@dataclass(frozen=True)
-class PlacedColumn:
-    """A column at its place in a row."""
-
-    column: TopicColumn
-    x: int
-    width: int
-
-    def fitted(self, text: str) -> str:
-        """The text padded to the width of the column, or cut with an ellipsis."""
-        blank = self.width - cell_len(text)
-        if blank < 0:
-            return set_cell_size(text, max(0, self.width - 1)) + "…"
-        return " " * blank + text if self.column.right else text + " " * blank
-
-
-def placed(width: int, longest_name: int = 0) -> tuple[PlacedColumn, ...]:
-    """The columns that fit into this width, with their gaps.
+def fitting(width: int, longest_name: int = 0) -> list[tuple[TopicColumn, int]]:
+    """Return the columns that fit into this width, each with its own.
 
     The room beyond the minimum widths goes to the names until the longest fits, and then to the
     types; if there is no column for types, all of it goes to the names.
@@ -193,28 +176,14 @@ def placed(width: int, longest_name: int = 0) -> tuple[PlacedColumn, ...]:
             break
         kept = [column for column in kept if column.id != unneeded]
     spare = max(0, width - _least(kept))
-    flexible = [column for column in kept if not column.width]
-    places: list[PlacedColumn] = []
-    x = 0
-    for column in kept:
-        share = spare if column is flexible[-1] else 0
-        if column is flexible[0] and len(flexible) > 1:
-            share = min(spare, max(0, longest_name - column.least))
-            spare -= share
-        wide = min(width, (column.width or column.least) + share)
-        places.append(PlacedColumn(column, x, wide))
-        x += wide + _gap(column)
-    return tuple(places)
+    has_types = sum(not column.width for column in kept) > 1
+    to_names = min(spare, max(0, longest_name - COLUMNS[0].least)) if has_types else spare
+    shares = {"name": to_names, "type": spare - to_names}
+    return [(one, min(width, (one.width or one.least) + shares.get(one.id, 0))) for one in kept]
 
 
-def _least(columns: list[TopicColumn]) -> int:
-    gaps = sum(_gap(column) for column in columns[:-1])
-    return sum(column.width or column.least for column in columns) + gaps
-
-
-def _gap(column: TopicColumn) -> int:
-    """Cells after a column: two where right-aligned figures may be followed by a word."""
-    return 2 if column.id in {"age", "lost"} else 1
+def _least(columns: Sequence[TopicColumn]) -> int:
+    return sum(column.width or column.least for column in columns) + len(columns) - 1
 
 
 _BY_ID = {column.id: column for column in COLUMNS}
@@ -226,7 +195,6 @@ class TopicsOrder:
 
     column_id: str = "name"
     reverse: bool = False
-    """Whether the order is the reverse of the column's own."""
     words: str = ""
     """All of them must occur in the topic's name or type."""
     housekeeping: bool = False
@@ -238,7 +206,6 @@ class TopicsOrder:
 
     @property
     def falling(self) -> bool:
-        """Whether the highest value comes first."""
         return self.column.falling is not self.reverse
 
     def by(self, column_id: str) -> TopicsOrder:
@@ -246,11 +213,6 @@ class TopicsOrder:
         if column_id == self.column_id:
             return replace(self, reverse=not self.reverse)
         return replace(self, column_id=column_id, reverse=False)
-
-    def next_column(self, column_ids: list[str]) -> TopicsOrder:
-        """The order by the next one of the columns that are shown."""
-        at = column_ids.index(self.column_id) if self.column_id in column_ids else -1
-        return replace(self, column_id=column_ids[(at + 1) % len(column_ids)], reverse=False)
 
     def arranged(self, rows: Iterable[TopicRow]) -> list[TopicRow]:
         """The rows to show, in order; equal ones are sorted by name."""
@@ -273,13 +235,13 @@ class TopicsTable(Rows):
     class Arranged(Message):
         """The order, the filter or the set of topics has changed."""
 
-    def __init__(self, *, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self._topics: Sequence[TopicRow] = ()
-        self._shown: list[TopicRow] = []
-        self._order = TopicsOrder()
+        self.shown: list[TopicRow] = []
+        self.order = TopicsOrder()
         self._words = ("", "")
-        self._places: tuple[PlacedColumn, ...] = ()
+        self._fitting: list[TopicColumn] = []
 
     def show_topics(self, rows: Sequence[TopicRow]) -> None:
         self._topics = rows
@@ -289,51 +251,40 @@ class TopicsTable(Rows):
         """Set the words that are shown while there are no rows."""
         if (headline, detail) != self._words:
             self._words = (headline, detail)
-            if not self._shown:
+            if not self.shown:
                 self.refresh()
 
-    @property
-    def order(self) -> TopicsOrder:
-        """The column to sort by, and what is left out."""
-        return self._order
-
     def reorder(self, order: TopicsOrder) -> None:
-        if order != self._order:
-            self._order = order
+        if order != self.order:
+            self.order = order
             self._arrange()
             self.post_message(self.Arranged())
 
     def filter(self, words: str) -> None:
-        """Show only topics whose name or type contains each of these words."""
-        self.reorder(replace(self._order, words=words))
+        self.reorder(replace(self.order, words=words))
 
     def sort_by_next(self) -> None:
-        """Sort by the next one of the columns that are shown."""
-        self.reorder(self._order.next_column([place.column.id for place in self._places]))
+        ids = [column.id for column in self._fitting]
+        at = ids.index(self.order.column_id) if self.order.column_id in ids else -1
+        self.reorder(replace(self.order, column_id=ids[(at + 1) % len(ids)], reverse=False))
 
     @property
     def chosen_row(self) -> TopicRow | None:
-        return next((row for row in self._shown if row.name == self.chosen), None)
-
-    @property
-    def shown(self) -> Sequence[TopicRow]:
-        return self._shown
+        return next((row for row in self.shown if row.name == self.chosen), None)
 
     def on_click(self, event: Click) -> None:
-        """Choose a column to sort by."""
-        for place in self._places if event.y == 0 else ():
-            if place.x <= event.x - MARK <= place.x + place.width:
-                self.reorder(self._order.by(place.column.id))
+        at = self.column_at(event.x)
+        if event.y == 0 and at is not None:
+            self.reorder(self.order.by(self._fitting[at].id))
 
     def on_language_changed(self) -> None:
         self._place()
 
     def render_line(self, y: int) -> Strip:
-        """A header, a topic, or words if there are none."""
-        if y and not self._shown:
+        if y and not self.shown:
             words = self._words
-            if self._topics and self._order.words:
-                words = (_("no topic matches “{words}”").format(words=self._order.words), "")
+            if self._topics and self.order.words:
+                words = (_("no topic matches “{words}”").format(words=self.order.words), "")
             strips = word_strips(words, self.size.width, self.rich_style, self.app.console)
             if y <= len(strips):
                 return strips[y - 1]
@@ -342,16 +293,13 @@ class TopicsTable(Rows):
     def _arrange(self) -> None:
         had, at = self._chosen, self._index(self._chosen)
         in_sight = at is not None and 0 <= at - self.scroll_offset.y < self.size.height - 1
-        self._shown = self._order.arranged(self._topics)
-        names = [row.name for row in self._shown]
-        if had not in names:
-            # The one that has taken its place; without any, the table has no chosen one.
-            self._chosen = names[min(at or 0, len(names) - 1)] if names else ""
-        self.show(*self._laid_out())
-        if self._chosen != had:
-            self.post_message(self.Highlighted(self, self._chosen))
+        self.shown = self.order.arranged(self._topics)
+        columns, rows = self._laid_out()
+        self.show(columns, rows, near=at or 0)
         now = self._index(self._chosen)
-        if in_sight and now is not None and now != at:
+        if now is None and had:
+            self.post_message(self.Highlighted(self, ""))
+        elif in_sight and now is not None and now != at:
             self._bring_into_view(now, self.scroll_offset.y)
 
     def _place(self) -> None:
@@ -359,19 +307,35 @@ class TopicsTable(Rows):
         super()._place()
 
     def _laid_out(self) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
-        """The columns that there is room for, and every row in them."""
-        longest = max((len(row.name) for row in self._shown), default=0)
-        self._places = placed(max(1, self.scrollable_size.width - MARK), longest)
-        ends = [*(place.x for place in self._places[1:]), self._places[-1].x + self._places[-1].width + 1]
-        arrow = "▼" if self._order.falling else "▲"
+        longest = max((len(row.name) for row in self.shown), default=0)
+        fits = fitting(max(1, self.scrollable_size.width - MARK), longest)
+        self._fitting = [column for column, _width in fits]
+        arrow = "▼" if self.order.falling else "▲"
         columns = []
-        for place, end in zip(self._places, ends, strict=True):
-            by = place.column is self._order.column
-            title = place.fitted(_(place.column.title) + (arrow if by else ""))
-            columns.append(Column(title, end - place.x - 1, look="sorted" if by else ""))
-        return tuple(columns), tuple(Row(row.name, tuple(self._cells(row))) for row in self._shown)
+        for column, width in fits:
+            by = column is self.order.column
+            title = _(column.title) + (arrow if by else "") + column.behind
+            columns.append(Column(title, width, column.right, "sorted" if by else ""))
+        return tuple(columns), tuple(Row(row.name, tuple(self._cells(row))) for row in self.shown)
 
     def _cells(self, row: TopicRow) -> Iterator[Cell]:
         wrong = has_problem(row)
-        for place in self._places:
-            yield Cell(place.fitted(place.column.text(row)), "warn" if wrong and place.column.id == "state" else "")
+        for column in self._fitting:
+            yield Cell(column.text(row) + column.behind, "warn" if wrong and column.id == "state" else "")
+
+
+def why_empty(deck: Host, listed: Sequence[TopicRow]) -> tuple[str, str]:
+    feed = deck.feed
+    if feed.link is None:
+        return _("no lesson is running"), ""
+    if feed.update is not None and feed.update.error:
+        return feed.blind, localized(feed.update.error)
+    if title.starting(deck):
+        return _("no topics yet"), _("Nodes are starting.")
+    if feed.update is None or not all(is_housekeeping(row.name) for row in listed):
+        return _("no topics yet"), ""
+    if not listed:
+        return _("no topics"), _("Nobody publishes anything, and nobody listens.")
+    key = deck.keys_of(show_housekeeping)[0]
+    words = _("There are only those of ROS itself: {key} shows them.").format(key=key)
+    return _("no topics of the robot"), words

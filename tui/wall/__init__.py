@@ -1,1 +1,1 @@
-"""The wall: few numbers, large, and a large picture, for a projector or from across the room."""
+"""The wall: the panels that can be read across a room, and a large stop."""

@@ -1,17 +1,15 @@
-"""A canvas of braille dots: two by four in every cell, about square on a terminal."""
+"""A canvas of braille dots, two by four in every cell; a bar with its scale; what has changed."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from space.drawing.braille import BLANK, characters, clipped
+from text.i18n import _, decimal
 from tui.widgets.drawing import LOOKS, Ink, Line
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 Point = tuple[float, float]
 """x to the right and y downwards, in dots."""
@@ -31,12 +29,6 @@ class Canvas:
         self._looks = np.zeros((rows, columns), dtype=np.uint8)
         self._signs: dict[tuple[int, int], str] = {}
 
-    def copy(self) -> Canvas:
-        other = Canvas(self.columns, self.rows)
-        other._on, other._looks = self._on.copy(), self._looks.copy()
-        other._signs = dict(self._signs)
-        return other
-
     def dots(self, x: NDArray[np.float64], y: NDArray[np.float64], look: str = "") -> None:
         """Set dots, x to the right and y downwards; those outside are ignored."""
         inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
@@ -45,7 +37,6 @@ class Canvas:
         self._looks[row // 4, column // 2] = _NUMBER[look]
 
     def mask(self, on: NDArray[np.bool_], look: str = "") -> None:
-        """Set the dots that are on in an array of this size."""
         self._on |= on
         touched = on.reshape(self.rows, 4, self.columns, 2).any(axis=(1, 3))
         self._looks[touched] = _NUMBER[look]
@@ -68,7 +59,6 @@ class Canvas:
         self.dots(x0 + (x1 - x0) * shares, y0 + (y1 - y0) * shares, look)
 
     def outline(self, corners: list[Point], look: str = "") -> None:
-        """Draw a closed figure."""
         for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
             self.line(start, end, look)
 
@@ -119,3 +109,38 @@ def rectangle(centre: Point, width: float, length: float, angle_rad: float) -> l
         x, y = across * width / 2, along * length / 2
         corners.append((centre[0] + x * cos + y * sin, centre[1] - x * sin + y * cos))
     return corners
+
+
+BAR_M = (1, 2, 5)
+"""First digits of the length of a scale bar."""
+BAR_CELLS = 12
+
+
+def scale_bar(dots_per_m: float) -> Line:
+    """A bar for a round number of metres, as long as that is in the picture."""
+    # The longest of 1, 2, 5, 10, ... metres, or fractions, that fits.
+    most_m = BAR_CELLS * 2 / dots_per_m
+    power = 10.0 ** math.floor(math.log10(most_m))
+    metres = max(digit * power for digit in BAR_M if digit * power <= most_m * (1 + 1e-9))
+    cells = max(1, round(metres * dots_per_m / 2))
+    bar = "├" + "─" * (cells - 2) + "┤" if cells > 1 else "│"
+    return [Ink(f"{bar} "), Ink(_("{metres} m").format(metres=decimal(f"{metres:g}")), "strong")]
+
+
+JUMP = 4
+"""A run of unchanged cells this short is cheaper to redraw than to skip."""
+
+
+def spans(cells: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+    """Runs of cells, as (row, first column, columns).
+
+    Those that are close together in a row are one: moving the cursor costs bytes too.
+    """
+    found: list[tuple[int, int, int]] = []
+    for row in np.flatnonzero(cells.any(axis=1)).tolist():
+        columns = np.flatnonzero(cells[row])
+        breaks = np.flatnonzero(np.diff(columns) > JUMP)
+        starts = columns[np.concatenate(([0], breaks + 1))].tolist()
+        ends = columns[np.concatenate((breaks, [len(columns) - 1]))].tolist()
+        found.extend((row, a, b - a + 1) for a, b in zip(starts, ends, strict=True))
+    return found

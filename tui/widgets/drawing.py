@@ -20,9 +20,8 @@ from graph.data import Trouble
 from text.i18n import _
 from text.plain import plain
 from tui.faults import report_fault
-from tui.widgets.one_style import OneStyle
 from tui.widgets.trouble import no_data_words, trouble_words
-from tui.widgets.words import cut, word_strips
+from tui.widgets.words import OneStyle, cut, word_strips
 
 _ONE_CELL_EACH = re.compile("[ -~\u0400-\u0482\u2500-\u25ff\u2800-\u28ff]*")
 """Text whose characters need not be measured individually."""
@@ -68,8 +67,8 @@ class Drawing(OneStyle, Widget):
     }
     """
 
-    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id=id)
         self._lines: list[Line] = []
         self._trouble: Trouble | None = None
         self._detail = ""
@@ -77,7 +76,6 @@ class Drawing(OneStyle, Widget):
         self._placeholder: Placeholder | None = None
         self._styles: dict[str, Style] = {}
         self._drawn_in = Size(0, 0)
-        """The size for which the lines were drawn."""
         self._fault = ""
         """Why the values cannot be drawn, empty if they can."""
 
@@ -149,10 +147,11 @@ class Drawing(OneStyle, Widget):
         except Exception as error:  # noqa: BLE001 - raised again where faults are not isolated
             self._fault = report_fault(self, error)
             return []
-        return [_greyed(line) for line in lines] if self.stale else lines
+        if self.stale:
+            return [[ink if ink.look == "alert" else Ink(ink.text, "muted") for ink in line] for line in lines]
+        return lines
 
     def on_resize(self) -> None:
-        """Redraw at the new size."""
         width, height = self.size
         self._lines = self._drawn(width, height) if width and height else []
         self.refresh()
@@ -171,7 +170,6 @@ class Drawing(OneStyle, Widget):
         return super().render_lines(crop)
 
     def render_line(self, y: int) -> Strip:
-        """One line of the drawing, or of the words in place of it."""
         width = self.size.width
         if self._fault or not self.draws:
             return self._words(y, width)
@@ -207,10 +205,6 @@ def _at(lines: Sequence[Line], y: int) -> Line:
     return lines[y] if y < len(lines) else []
 
 
-def _greyed(line: Line) -> Line:
-    return [ink if ink.look == "alert" else Ink(ink.text, "muted") for ink in line]
-
-
 def _difference(before: Line, after: Line, y: int, width: int) -> Region | None:
     """The cells of a line that look different, from the first to the last of them."""
     if before == after:
@@ -235,7 +229,6 @@ def _cells(line: Line, width: int) -> list[tuple[str, str]]:
 
 
 def cells_of(line: Line) -> int:
-    """Width of a line in cells."""
     return sum(cell_len(ink.text) for ink in line)
 
 

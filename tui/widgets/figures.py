@@ -6,7 +6,6 @@ from text.figures import figure, whole
 from text.i18n import _
 
 UNKNOWN = "–"
-"""Shown if there is no figure."""
 WHOLE_FROM = 100
 MILLI = 1e-3
 MICRO = 1e-6
@@ -25,7 +24,6 @@ def seconds_text(seconds: float | None) -> str:
 
 
 def count_text(count: int | None) -> str:
-    """A count in at most five cells."""
     if count is None:
         return UNKNOWN
     if count < 100_000:

@@ -5,17 +5,21 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.cells import cell_len
 from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
+from textual.events import Resize
 from textual.geometry import Region
 from textual.strip import Strip
+from textual.timer import Timer
 from textual.widget import Widget
 
+from graph.data import Sample
 from graph.heavy_types import COMPRESSED_IMAGE, IMAGE
 from graph.pictures.picture import Picture
 from graph.pictures.pixels import ImageError, shrink
@@ -24,18 +28,9 @@ from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
-from tui.terminal.bandwidth import PicturePace
-from tui.widgets.one_style import OneStyle
-from tui.widgets.words import cut, in_row, word_strips
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    from textual.events import Resize
-    from textual.timer import Timer
-
-    from graph.data import Sample
-    from graph.pictures.picture import Fit
-    from tui.terminal.bandwidth import Bandwidth, HasBandwidth
+from tui.terminal.bandwidth import Bandwidth, HasBandwidth, PicturePace
+from tui.widgets.canvas import spans
+from tui.widgets.words import OneStyle, cut, in_row, word_strips
 
 CAPTION_FROM = 4
 """Number of rows from which on one of them is used for the caption."""
@@ -44,6 +39,10 @@ SCALE_FROM = 8
 WIDEST_SCALE = 48
 UNPLACED = (200, 60)
 """Columns and rows to assume before the widget has a size."""
+
+
+Showing = Callable[[Picture], None]
+Refusing = Callable[[ImageError], None]
 
 
 class ImageScale(NamedTuple):
@@ -78,8 +77,8 @@ class ImageView(OneStyle, Widget):
     ImageView { width: 1fr; height: 1fr; min-height: 3; }
     """
 
-    def __init__(self, *, bits: int = 5, id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id=id, classes=classes)
+    def __init__(self, *, bits: int = 5) -> None:
+        super().__init__()
         self._bits = bits
         self._newest: ShownPicture | None = None
         self._waits = False
@@ -87,10 +86,40 @@ class ImageView(OneStyle, Widget):
         self._timer: Timer | None = None
         self._pace = PicturePace()
         self._shown: Pixels | None = None
-        self._caption = ""
+        self.caption = ""
         self._scale: ImageScale | None = None
-        self._headline = ""
-        self._detail = ""
+        self.words = ("", "")
+        """Headline and detail shown in place of a picture, both empty if there is one."""
+        self._unread: tuple[Sample, Showing, Refusing] | None = None
+        """The newest message that came while another was being decoded."""
+        self._decoding = False
+
+    def read(self, sample: Sample, show: Showing, refuse: Refusing) -> None:
+        """Read the picture of a message, then `show` or `refuse` it; compressed ones that are late are left out."""
+        if sample.type_name == IMAGE:
+            # It takes a millisecond: less than switching to another thread and back.
+            try:
+                show(read_picture(IMAGE, sample.value, self.wanted))
+            except ImageError as error:
+                refuse(error)
+            return
+        self._unread = sample, show, refuse
+        if not self._decoding:
+            self._decoding = True
+            self.run_worker(self._decode(), group="pictures")
+
+    async def _decode(self) -> None:
+        try:
+            while self._unread is not None:
+                (sample, show, refuse), self._unread = self._unread, None
+                try:
+                    found = await asyncio.to_thread(read_picture, COMPRESSED_IMAGE, sample.value, self.wanted)
+                except ImageError as error:
+                    refuse(error)
+                else:
+                    show(found)
+        finally:
+            self._decoding = False
 
     def show(self, rgb: Pixels, caption: str = "", scale: ImageScale | None = None, hz: str = "") -> None:
         """Show a picture of shape (height, width, 3) at any size, with a line of text below it.
@@ -101,7 +130,7 @@ class ImageView(OneStyle, Widget):
         if rgb.shape[2:] != (3,) or not rgb.size:
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
         self._newest = ShownPicture(rgb, caption, scale, hz)
-        self._headline = self._detail = ""
+        self.words = ("", "")
         if self._waits:
             self._pace.left_out(clock.steady())
         elif self._shown is None or not (wait_s := self._bandwidth.wait_s()):
@@ -115,12 +144,11 @@ class ImageView(OneStyle, Widget):
             self._take(self._newest)
 
     def show_words(self, headline: str, detail: str = "") -> None:
-        """Show why there is no picture, in its place."""
-        if self._newest is None and (headline, detail) == (self._headline, self._detail):
+        if self._newest is None and (headline, detail) == self.words:
             return
         self._newest = self._shown = None
         self._waits = False
-        self._headline, self._detail, self._caption = headline, detail, ""
+        self.words, self.caption = (headline, detail), ""
         self._scale = None
         self.refresh()
 
@@ -147,18 +175,7 @@ class ImageView(OneStyle, Widget):
         wide, high = fitting_size(width, height, columns, rows)
         return 2 * wide, 2 * high
 
-    @property
-    def caption(self) -> str:
-        """The line below the picture."""
-        return self._caption
-
-    @property
-    def words(self) -> tuple[str, str]:
-        """Headline and detail shown in place of a picture, both empty if there is one."""
-        return self._headline, self._detail
-
     def render_line(self, y: int) -> Strip:
-        """One line of the picture, the caption, or the words in their place."""
         width, height = self.size
         if self._shown is None:
             return self._words_strip(y, width, height)
@@ -201,7 +218,10 @@ class ImageView(OneStyle, Widget):
         self._pace.shown(now_s)
         self._set_scale(picture.scale)
         self._draw(picture.rgb)
-        self._set_caption(picture.caption + self._rate_words(picture.hz, now_s))
+        caption = picture.caption + self._rate_words(picture.hz, now_s)
+        if caption != self.caption:
+            self.caption = caption
+            self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
 
     def _rate_words(self, hz: str, now_s: float) -> str:
         shown = self._pace.limited_hz(now_s)
@@ -234,11 +254,6 @@ class ImageView(OneStyle, Widget):
         if regions:
             self.refresh(*regions)
 
-    def _set_caption(self, caption: str) -> None:
-        if caption != self._caption:
-            self._caption = caption
-            self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
-
     def _set_scale(self, scale: ImageScale | None) -> None:
         if (scale is None) != (self._scale is None):
             # The picture gains or loses a row.
@@ -259,7 +274,7 @@ class ImageView(OneStyle, Widget):
 
     def _caption_strip(self, width: int) -> Strip:
         style = self.rich_style + Style(dim=True)
-        strip = cut([Segment(plain(self._caption), style)], width, style)
+        strip = cut([Segment(plain(self.caption), style)], width, style)
         text = strip.text.strip()
         left = (width - cell_len(text)) // 2
         return in_row(Strip([Segment(text, style)]), left, width, style)
@@ -275,8 +290,7 @@ class ImageView(OneStyle, Widget):
         return in_row(strip, (width - strip.cell_length) // 2, width, base)
 
     def _words_strip(self, y: int, width: int, height: int) -> Strip:
-        words = (self._headline, self._detail)
-        strips = word_strips(words, width, self.rich_style, self.app.console, centred=True)
+        strips = word_strips(self.words, width, self.rich_style, self.app.console, centred=True)
         line = y - max(0, (height - len(strips)) // 2)
         if 0 <= line < len(strips):
             return strips[line]
@@ -288,8 +302,6 @@ Pixels: TypeAlias = "NDArray[np.uint8]"
 
 UPPER_HALF = "▀"
 FULL_DEPTH = 8
-JUMP = 4
-"""A run of unchanged cells this short is cheaper to redraw than to skip."""
 MOST_STYLES = 4096
 MOST_COLOURS = 8192
 """Kept for the next picture: three megabytes, and two for the styles."""
@@ -327,20 +339,9 @@ def steadied(before: Pixels, fresh: Pixels, bits: int) -> Pixels:
 
 
 def changed_spans(before: Pixels, after: Pixels) -> list[tuple[int, int, int]]:
-    """Where two pictures of the same shape differ, as (row of cells, first column, columns).
-
-    Differences that are close together in a row form one span: moving the cursor costs bytes too.
-    """
+    """Where two pictures of the same shape differ, as (row of cells, first column, columns)."""
     differ = (before != after).any(axis=2)
-    cells = differ[0::2] | differ[1::2]
-    spans: list[tuple[int, int, int]] = []
-    for row in np.flatnonzero(cells.any(axis=1)):
-        columns = np.flatnonzero(cells[row])
-        breaks = np.flatnonzero(np.diff(columns) > JUMP)
-        starts = columns[np.concatenate(([0], breaks + 1))]
-        ends = columns[np.concatenate((breaks, [len(columns) - 1]))]
-        spans.extend((int(row), int(a), int(b - a + 1)) for a, b in zip(starts, ends, strict=True))
-    return spans
+    return spans(differ[0::2] | differ[1::2])
 
 
 def row_segments(picture: Pixels, row: int) -> list[Segment]:
@@ -350,14 +351,12 @@ def row_segments(picture: Pixels, row: int) -> list[Segment]:
     pairs = (packed[0] << 24) | packed[1]
     starts = np.flatnonzero(np.diff(pairs, prepend=-1))
     ends = np.append(starts[1:], len(pairs))
-    return [_segment(int(pairs[start]), int(end - start)) for start, end in zip(starts, ends, strict=True)]
-
-
-def _segment(pair: int, cells: int) -> Segment:
-    upper, lower = pair >> 24, pair & 0xFFFFFF
-    if upper == lower:
-        return Segment(" " * cells, _style(None, lower))
-    return Segment(UPPER_HALF * cells, _style(upper, lower))
+    segments = []
+    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+        upper, lower = int(pairs[start]) >> 24, int(pairs[start]) & 0xFFFFFF
+        sign, style = (" ", _style(None, lower)) if upper == lower else (UPPER_HALF, _style(upper, lower))
+        segments.append(Segment(sign * (end - start), style))
+    return segments
 
 
 @lru_cache(maxsize=MOST_STYLES)
@@ -369,49 +368,3 @@ def _style(upper: int | None, lower: int) -> Style:
 @lru_cache(maxsize=MOST_COLOURS)
 def _color(packed: int) -> Color:
     return Color.from_rgb(packed >> 16, packed >> 8 & 255, packed & 255)
-
-
-class NewestPicture:
-    """Reads one picture after the other; those compressed ones that are outdated by then are left out."""
-
-    def __init__(
-        self,
-        widget: Widget,
-        fit: Fit,
-        show: Callable[[Sample, Picture], None],
-        refuse: Callable[[Sample, ImageError], None],
-    ) -> None:
-        """`fit` as for `read_picture`; `show` or `refuse` is called with each that is read."""
-        self._widget = widget
-        self._fit = fit
-        self._show = show
-        self._refuse = refuse
-        self._waiting: Sample | None = None
-        """The newest one that came while another was being decoded."""
-        self._decoding = False
-
-    def take(self, sample: Sample) -> None:
-        if sample.type_name == IMAGE:
-            # It takes a millisecond: less than switching to another thread and back.
-            try:
-                self._show(sample, read_picture(IMAGE, sample.value, self._fit))
-            except ImageError as error:
-                self._refuse(sample, error)
-            return
-        self._waiting = sample
-        if not self._decoding:
-            self._decoding = True
-            self._widget.run_worker(self._decode(), group="pictures")
-
-    async def _decode(self) -> None:
-        try:
-            while self._waiting is not None:
-                sample, self._waiting = self._waiting, None
-                try:
-                    found = await asyncio.to_thread(read_picture, COMPRESSED_IMAGE, sample.value, self._fit)
-                except ImageError as error:
-                    self._refuse(sample, error)
-                else:
-                    self._show(sample, found)
-        finally:
-            self._decoding = False

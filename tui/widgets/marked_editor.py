@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from collections.abc import Iterable
+from typing import ClassVar, NamedTuple
 
 from rich.segment import Segment
+from rich.style import Style
 from rich.text import Text
+from textual.document._document import EditResult
+from textual.document._edit import Edit
+from textual.events import Paste
 from textual.geometry import Offset
 from textual.message import Message
 from textual.strip import Strip
@@ -14,15 +19,8 @@ from textual.widgets import TextArea
 
 from text.plain import replaced
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from rich.style import Style
-    from textual.document._document import EditResult
-    from textual.document._edit import Edit
-    from textual.events import Paste
-
 MARK = "✗"
+PARTS = ("key", "string", "number", "word", "mark", "comment", "bad", "problem", "gutter")
 MARGIN = 2
 """Cells that `TextArea` leaves between a line's number and its text."""
 
@@ -59,17 +57,7 @@ class MarkedEditor(TextArea):
     class TooLong(Message):
         """A paste was rejected because the text would become too long."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "marked-editor--key",
-        "marked-editor--string",
-        "marked-editor--number",
-        "marked-editor--word",
-        "marked-editor--mark",
-        "marked-editor--comment",
-        "marked-editor--bad",
-        "marked-editor--problem",
-        "marked-editor--gutter",
-    }
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"marked-editor--{part}" for part in PARTS}
     DEFAULT_CSS = """
     MarkedEditor {
         border: none; padding: 0; height: 1fr; scrollbar-size: 1 1;
@@ -113,7 +101,6 @@ class MarkedEditor(TextArea):
         return replaced(lines, lambda one: one if one in "\n\t" else self.escaped(one))
 
     def load_text(self, text: str) -> None:
-        """Replace the text and discard the history."""
         super().load_text(self.shown(text))
 
     def edit(self, edit: Edit) -> EditResult:
@@ -142,13 +129,11 @@ class MarkedEditor(TextArea):
         self.move_cursor((0, 0))
 
     def on_paste(self, event: Paste) -> None:
-        """Reject text that is too long."""
         if len(self.shown(event.text)) + len(self.text) > self.longest:
             event.prevent_default().stop()
             self.post_message(self.TooLong())
 
     def get_line(self, line_index: int) -> Text:
-        """Return the line with its tokens coloured."""
         source = self.document.get_line(line_index)
         line = Text(source, no_wrap=True)
         line.end = ""
@@ -160,7 +145,6 @@ class MarkedEditor(TextArea):
         return line
 
     def render_line(self, y: int) -> Strip:
-        """The line, with a mark between its number and its text if it contains an error."""
         strip = super().render_line(y)
         if not self._places:
             return strip

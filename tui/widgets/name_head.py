@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from textual.content import Content
 from textual.widgets import Static
 
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 LONGEST = 300
 
@@ -22,15 +19,15 @@ class NameHead(Static):
     NameHead { width: 1fr; height: auto; max-height: 4; background: $panel; padding: 0 1; }
     """
 
-    def __init__(self) -> None:
-        super().__init__(markup=False)
-        self._said: tuple[str, ...] = ()
+    said: tuple[str, ...] = ()
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id, markup=False)
 
     def show(self, name: str, *facts: str) -> None:
-        """Show the name and the facts, made harmless, each fact on its own line."""
         said: tuple[str, ...] = (name, *(fact for fact in facts if fact))
-        if said != self._said:
-            self._said = said
+        if said != self.said:
+            self.said = said
             lines = [Content.styled(plain(name, LONGEST), "bold")]
             lines += [Content.styled(plain(fact, LONGEST), "$text-muted") for fact in said[1:]]
             self.update(Content("\n").join(lines))
@@ -38,6 +35,6 @@ class NameHead(Static):
     def show_lines(self, lines: Sequence[Content]) -> None:
         """Show lines with styles of their own in the place of name and facts."""
         said = tuple(line.markup for line in lines)
-        if said != self._said:
-            self._said = said
+        if said != self.said:
+            self.said = said
             self.update(Content("\n").join(lines))

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from textual.content import Content
 
-from launcher.status import HALTED, STUCK, THREAD, NodeState
+from launcher.status import HALTED, STUCK, THREAD, NodeState, NodeStatus
 from text.figures import figure, whole
 from text.i18n import N_, _, localized
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from launcher.status import NodeStatus
 
 STATES = {
     NodeState.WAITING: ("◌", N_("waiting"), "dim"),
@@ -39,7 +34,6 @@ LONGEST_S = 1000.0 * DAY_S
 
 
 def state_words(node: NodeStatus) -> tuple[str, str, str]:
-    """Return the sign, word and meaning of a node's state."""
     if (ailing := ailing_words(node)) is not None:
         return ailing
     return LATE if node.late else STATES[node.state]
@@ -52,7 +46,6 @@ def ailing_words(node: NodeStatus) -> tuple[str, str, str] | None:
 
 
 def why(node: NodeStatus) -> str:
-    """Return why the node is in its state, or what it runs if there is no reason."""
     if node.fault is not None:
         return plain(localized(node.fault.words))
     if node.detail:
@@ -81,12 +74,10 @@ def duration(seconds: float | None) -> str:
 
 
 def percent(value: float | None) -> str:
-    """Return a share of one core."""
     return "" if value is None else f"{whole(value)} %"
 
 
 def memory(size: int | None) -> str:
-    """Return an amount of memory in megabytes."""
     return "" if size is None else _("{n} MB").format(n=round(size / 1_000_000))
 
 

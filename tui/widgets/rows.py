@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
+from rich.style import Style
 from textual.binding import Binding, BindingType
+from textual.events import Click
 from textual.geometry import Region, Size
 from textual.message import Message
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from tui.widgets.one_style import OneStyle
-
-if TYPE_CHECKING:
-    from rich.style import Style
-    from textual.events import Click
+from tui.widgets.words import OneStyle
 
 MARK = 2
 """Cells left of the first column, for the mark of the chosen row."""
@@ -71,13 +69,7 @@ class Rows(OneStyle, ScrollView, can_focus=True):
 
     ALLOW_SELECT = False
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "rows--header",
-        "rows--cursor",
-        "rows--good",
-        "rows--warn",
-        "rows--bad",
-        "rows--dim",
-        "rows--sorted",
+        f"rows--{part}" for part in ["header", "cursor", "good", "warn", "bad", "dim", "sorted"]
     }
     DEFAULT_CSS = """
     Rows {
@@ -114,10 +106,12 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._rows: tuple[Row, ...] = ()
         self._chosen = ""
         self._moved = False
-        """Whether the user has chosen a row."""
 
-    def show(self, columns: Sequence[Column], rows: Sequence[Row]) -> None:
-        """Show these rows in these columns; texts must be harmless and have no line breaks."""
+    def show(self, columns: Sequence[Column], rows: Sequence[Row], *, near: int = 0) -> None:
+        """Show these rows in these columns; texts must be harmless and have no line breaks.
+
+        If the chosen row has gone, the one at the place `near` is chosen.
+        """
         before, self._rows = self._rows, tuple(rows)
         if tuple(columns) != self._columns:
             self._columns = tuple(columns)
@@ -126,13 +120,12 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             self.virtual_size = Size(0, self._top + len(self._rows))
             self.refresh()
         if self._index(self._chosen) is None:
-            self._choose_near(0)
+            self._choose_near(max(0, min(near, len(self._rows) - 1)))
         if self._widths:
             self._refresh_changed(before)
 
     @property
     def chosen(self) -> str:
-        """Key of the chosen row, empty if there is none."""
         return self._chosen
 
     @property
@@ -147,8 +140,16 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         rooms = self._room_for(len(cells))
         return any(cell_len(cell.text) > room for cell, room in zip(cells, rooms))  # noqa: B905
 
+    def column_at(self, x: int) -> int | None:
+        """Return the number of the column at this cell."""
+        right = MARK
+        for at, width in enumerate(self._widths):
+            right += width + 1
+            if MARK <= x < right:
+                return at
+        return None
+
     def choose(self, key: str) -> None:
-        """Choose a row by its key, if there is one."""
         index = self._index(key)
         if index is not None:
             self._choose(index)
@@ -174,7 +175,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         return self._strip(row.cells, "▶ " if chosen else "  ", base, width, plain=chosen)
 
     def action_move(self, by: int) -> None:
-        """Choose the row this many below."""
         self._moved = True
         at = self._index(self._chosen)
         self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
@@ -187,7 +187,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
             self.post_message(self.Opened(self, self._chosen))
 
     def on_click(self, event: Click) -> None:
-        """Choose a row; a second click opens it."""
         index = event.y - self._top + self.scroll_offset.y
         if event.y >= self._top and index < len(self._rows) and self._rows[index].key:
             self._moved = True
@@ -197,7 +196,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
                 self.action_open()
 
     def on_resize(self) -> None:
-        """Lay out the columns again, and keep the chosen row in sight."""
         self._place()
         index = self._index(self._chosen)
         if index is not None:
@@ -209,11 +207,9 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._place()
 
     def on_focus(self) -> None:
-        """Draw the cursor as focused."""
         self._refresh_row(self._index(self._chosen))
 
     def on_blur(self) -> None:
-        """Draw the cursor as unfocused."""
         self._refresh_row(self._index(self._chosen))
 
     def _place(self) -> None:
@@ -275,7 +271,6 @@ class Rows(OneStyle, ScrollView, can_focus=True):
                 x += width + 1
 
     def _room_for(self, cells: int) -> tuple[int, ...]:
-        """Return the widths of a row with this many cells."""
         if not cells or cells >= len(self._widths):
             return self._widths
         kept = self._widths[: cells - 1]

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from collections.abc import Sequence
+from typing import ClassVar, NamedTuple
 
 from textual.content import Content
+from textual.geometry import Size
 from textual.message import Message
 from textual.style import Style
 from textual.widget import Widget
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from textual.geometry import Size
 
 
 class TabEntry(NamedTuple):
@@ -33,10 +30,7 @@ class TabLine(Widget):
             super().__init__()
             self.key = key
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {
-        *("tab-line--tab", "tab-line--front"),
-        *("tab-line--bad", "tab-line--warn"),
-    }
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"tab-line--{part}" for part in ("tab", "front", "bad", "warn")}
     DEFAULT_CSS = """
     TabLine {
         width: auto; height: 1; background: $panel;
@@ -55,7 +49,6 @@ class TabLine(Widget):
         self._entries: tuple[TabEntry, ...] = ()
 
     def show_tabs(self, front: str, entries: Sequence[TabEntry]) -> None:
-        """Show these tabs, the one with the key `front` in front."""
         if (front, tuple(entries)) != (self._front, self._entries):
             self._front, self._entries = front, tuple(entries)
             self.refresh(layout=True)

@@ -1,9 +1,10 @@
-"""Words in place of something that cannot be shown: a headline and a detail, wrapped."""
+"""Lines that a widget draws itself: words in place of what cannot be shown, and its style computed once."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
@@ -12,7 +13,35 @@ from textual.strip import Strip
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.style import Style
+    from textual.geometry import Region
+    from textual.strip import Strip
+    from textual.widget import Widget as Base
+else:
+    # Textual looks for a widget's CSS along the first base class that is a widget.
+    Base = object
+
+
+class OneStyle(Base):
+    """Mixin for a widget that draws line by line: computing `rich_style` takes Textual 0.2 ms."""
+
+    __drawing = False
+    __style: Style | None = None
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        self.__drawing = True
+        try:
+            return super().render_lines(crop)
+        finally:
+            self.__drawing, self.__style = False, None
+
+    @property
+    def rich_style(self) -> Style:
+        if not self.__drawing:
+            return super().rich_style
+        if self.__style is None:
+            self.__style = super().rich_style
+        return self.__style
 
 
 def word_strips(
@@ -29,7 +58,6 @@ def word_strips(
 
 
 def in_row(strip: Strip, left: int, width: int, base: Style) -> Strip:
-    """The strip, this many cells from the left, in a row of `width` cells."""
     margin = [Segment(" " * left, base)] if left else []
     return Strip([*margin, *strip]).adjust_cell_length(width, base)
 

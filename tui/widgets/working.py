@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from textual.dom import DOMNode
-
-if TYPE_CHECKING:
-    from textual.messages import Prune
+from textual.messages import Prune
 
 
 class Working(DOMNode):

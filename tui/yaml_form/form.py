@@ -3,37 +3,92 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, ClassVar
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.containers import Vertical
+from textual.events import Click
 from textual.message import Message
+from textual.timer import Timer
 from textual.widgets import Static, TextArea
+from textual.worker import Worker
 
+from graph.data import Value
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.messages.yaml_form import check, prefilled
-from text.i18n import _
+from text.i18n import N_, _
 from text.plain import plain
 from text.yaml_faults import YamlError
-from tui.actions import Acting, bindings
+from text.yaml_scalars import escaped, meaning
+from tui.actions import Acting, Announce, bindings
+from tui.widgets.marked_editor import MarkedEditor, Token
 from tui.widgets.working import Working
-from tui.yaml_form.actions import FORM_ACTIONS
-from tui.yaml_form.editor import YamlEditor
-from tui.yaml_form.words import place_of, wrong_words
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from textual.app import ComposeResult
-    from textual.events import Click
-    from textual.timer import Timer
-    from textual.worker import Worker
-
-    from graph.data import Value
-    from tui.yaml_form.words import Wrong
+from tui.yaml_form.words import Wrong, place_of, wrong_words
 
 CHECKED_AFTER_S = 0.15
+
+action: Announce[YamlForm] = Announce()
+
+
+@action(
+    "form.submit",
+    "ctrl+s",
+    N_("Submit"),
+    N_("Take the message as it is filled in, if nothing is wrong with it."),
+    means="submit",
+    footer=True,
+    priority=True,
+    when=lambda form: form.submits,
+    label=lambda form: form.submit_title or N_("Submit"),
+)
+def submit_form(form: YamlForm) -> None:
+    form.submit()
+
+
+_TOKEN = re.compile(
+    r"""
+    (?P<comment>(?:^|(?<=\s))\#.*)
+    | (?P<string>"(?:[^"\\]|\\.)*"? | '(?:[^']|'')*'?)
+    | (?P<mark>[\[\]{},] | [-:](?=\s|$))
+    | (?P<plain>(?:[^\s\[\]{},:] | :(?!\s|$))+)
+    """,
+    re.VERBOSE,
+)
+_KEY_FOLLOWS = re.compile(r"\s*:(?=\s|$)")
+
+
+def tokens(line: str) -> Iterator[Token]:
+    """Yield the tokens of a line in order; accepts any text."""
+    for match in _TOKEN.finditer(line):
+        yield Token(match.start(), match.end(), _kind(match, line))
+
+
+def _kind(match: re.Match[str], line: str) -> str:
+    kind = match.lastgroup or "plain"
+    if kind in {"comment", "mark"}:
+        return kind
+    if _KEY_FOLLOWS.match(line, match.end()):
+        return "key"
+    if kind == "string":
+        return kind
+    value = meaning(match.group())
+    if isinstance(value, str):
+        return "string"
+    return "word" if value is None or isinstance(value, bool) else "number"
+
+
+class YamlEditor(MarkedEditor):
+    """Edits YAML; Enter starts a new line with the indentation of the current one."""
+
+    def escaped(self, character: str) -> str:
+        return escaped(character)
+
+    def tokens_of(self, line: str) -> Iterable[Token]:
+        return tokens(line)
 
 
 class YamlForm(Vertical, Acting, Working):
@@ -42,27 +97,14 @@ class YamlForm(Vertical, Acting, Working):
     class Submitted(Message):
         """The form is valid, and Ctrl+S was pressed."""
 
-        def __init__(self, form: YamlForm, value: Mapping[str, Value]) -> None:
+        def __init__(self, value: Mapping[str, Value]) -> None:
             super().__init__()
-            self.form = form
             self.value = value
 
-        @property
-        def control(self) -> YamlForm:
-            return self.form
-
     class Checked(Message):
-        """The text was checked: `form.error` says what is wrong, None if nothing is."""
+        """The text was checked: the form's `error` says what is wrong, None if nothing is."""
 
-        def __init__(self, form: YamlForm) -> None:
-            super().__init__()
-            self.form = form
-
-        @property
-        def control(self) -> YamlForm:
-            return self.form
-
-    BINDINGS: ClassVar = bindings(*FORM_ACTIONS)
+    BINDINGS: ClassVar = bindings(submit_form)
     DEFAULT_CSS = """
     YamlForm {
         height: 1fr;
@@ -97,12 +139,10 @@ class YamlForm(Vertical, Acting, Working):
         """What is wrong with the text that was checked last."""
         self._value: Mapping[str, Value] | None = None
         self._checked: str | None = None
-        """The text that was checked."""
         self._timer: Timer | None = None
         self._loading = False
 
     def compose(self) -> ComposeResult:
-        """The editor above the verdict."""
         yield YamlEditor()
         yield Static(markup=False)
 
@@ -112,9 +152,7 @@ class YamlForm(Vertical, Acting, Working):
         else:
             self.on_language_changed()
 
-    @property
-    def editor(self) -> YamlEditor:
-        return self.query_one(YamlEditor)
+    editor = getters.query_one(YamlEditor)
 
     @property
     def text(self) -> str:
@@ -128,14 +166,15 @@ class YamlForm(Vertical, Acting, Working):
 
     @property
     def verdict(self) -> str:
-        """The text below the editor."""
         return str(self.query_one(Static).content)
 
     def load(self, type_name: str, text: str | None = None) -> Worker[None]:
         """Show the form of another type, or `text` in it; the worker ends when it is shown."""
         self.type_name = type_name
         self._loading = True
-        self._forget()
+        self._checked = self._value = self.error = None
+        self.editor.show_problems(())
+        self.on_language_changed()
         return self.run_worker(self._load(type_name, text), group="load", exclusive=True)
 
     def submit(self) -> None:
@@ -145,10 +184,9 @@ class YamlForm(Vertical, Acting, Working):
             self.go_to_problem()
             self.app.bell()
         else:
-            self.post_message(self.Submitted(self, value))
+            self.post_message(self.Submitted(value))
 
     def go_to_problem(self) -> None:
-        """Move the cursor to what is wrong."""
         place = None if self.error is None else place_of(self.error)
         if place is not None:
             self.editor.go_to(place)
@@ -159,7 +197,6 @@ class YamlForm(Vertical, Acting, Working):
             self._take(self.text, _checked(self.type_name, self.text))
 
     def on_language_changed(self) -> None:
-        """Show the verdict in the current language."""
         words = "✓ " + _("valid {type}").format(type=plain(self.type_name, 100))
         if self._loading or (self.type_is_given and not self.type_name):
             words = _("the form is being loaded…")
@@ -187,7 +224,6 @@ class YamlForm(Vertical, Acting, Working):
         await self._check()
 
     def on_click(self, event: Click) -> None:
-        """Go to what is wrong when the verdict is clicked."""
         if isinstance(event.widget, Static):
             self.go_to_problem()
 
@@ -214,11 +250,6 @@ class YamlForm(Vertical, Acting, Working):
         if (type_name, text) == (self.type_name, self.text):
             self._take(text, found)
 
-    def _forget(self) -> None:
-        self._checked = self._value = self.error = None
-        self.editor.show_problems(())
-        self.on_language_changed()
-
     def _take(self, text: str, found: Mapping[str, Value] | Wrong) -> None:
         self._checked = text
         if isinstance(found, (YamlError, FieldError, UnknownTypeError)):
@@ -228,7 +259,7 @@ class YamlForm(Vertical, Acting, Working):
         place = None if self.error is None else place_of(self.error)
         self.editor.show_problems(() if place is None else (place,))
         self.on_language_changed()
-        self.post_message(self.Checked(self))
+        self.post_message(self.Checked())
 
 
 def _checked(type_name: str, text: str) -> Mapping[str, Value] | Wrong:

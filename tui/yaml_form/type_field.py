@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from textual import on
+from textual import getters, on
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
+from textual.events import DescendantBlur
 from textual.message import Message
 from textual.widgets import Input, OptionList
 
 from tui.widgets.field import Field
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-    from textual.events import DescendantBlur
 
 EXAMPLES = "example_interfaces/"
 LISTED = 50
@@ -26,10 +24,6 @@ class TypeField(Vertical):
 
     class TypeChosen(Message):
         """A type was chosen: typed in full, or from the list."""
-
-        def __init__(self, type_name: str) -> None:
-            super().__init__()
-            self.type_name = type_name
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "move(1)", show=False),
@@ -56,9 +50,7 @@ class TypeField(Vertical):
         listed.can_focus = False
         yield listed
 
-    @property
-    def field(self) -> Input:
-        return self.query_one(Input)
+    field = getters.query_one(Input)
 
     @property
     def value(self) -> str:
@@ -69,13 +61,11 @@ class TypeField(Vertical):
         return self.has_class("-listing")
 
     def know(self, types: tuple[str, ...]) -> None:
-        """Use these types for completion."""
         self._types = types
         if self.field.has_focus:
             self._list()
 
     def set(self, type_name: str) -> None:
-        """Show a type that was chosen elsewhere."""
         self._chosen = type_name
         self.field.value = type_name
         self.close()
@@ -131,7 +121,6 @@ class TypeField(Vertical):
         self._choose(str(event.option.prompt))
 
     def on_descendant_blur(self, event: DescendantBlur) -> None:
-        """Close the list and accept the text when the focus leaves."""
         del event
         self.close()
         if self.value and self.value != self._chosen:
@@ -140,7 +129,7 @@ class TypeField(Vertical):
     def _choose(self, type_name: str) -> None:
         if type_name != self._chosen:
             self.set(type_name)
-            self.post_message(self.TypeChosen(type_name))
+            self.post_message(self.TypeChosen())
         else:
             self.close()
 

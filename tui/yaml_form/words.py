@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TypeAlias
 
 from graph.messages.making import FieldError
@@ -19,7 +20,6 @@ Wrong: TypeAlias = YamlError | FieldError | UnknownTypeError
 
 
 def place_of(error: Wrong) -> TextPlace | None:
-    """Return where it is wrong, None if the type does not exist."""
     line = getattr(error, "line", None)
     return None if line is None else TextPlace(line, getattr(error, "column", None) or 1)
 
@@ -29,12 +29,13 @@ def wrong_words(error: Wrong) -> str:
     place = place_of(error)
     line = "" if place is None else _("line {line}").format(line=place.line)
     field = error.field if isinstance(error, FieldError) else ""
-    message = error.reason if isinstance(error, UnknownTypeError) else error.message
+    message = error.words if isinstance(error, UnknownTypeError) else error.message
     return plain(": ".join(part for part in (line, field, localized(message)) if part), LONGEST)
 
 
 def reason_words(error: Exception) -> str:
-    """Return why something was not sent, for any exception."""
     if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
         return wrong_words(error)
+    if isinstance(error, asyncio.TimeoutError):
+        return _("ROS did not accept it in time")
     return plain(localized(reason_of(error)), LONGEST)

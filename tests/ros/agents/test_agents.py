@@ -28,9 +28,9 @@ from launcher.consent import AUDIT_FILE, ConsentAnswer
 from launcher.control.consent import REFUSED_FOR_S
 from launcher.status import NodeState, Severity
 from nodes.parts.stop_news import named
-from robot.safety.stop_file import TOPIC, StopFile
-from robot.safety.stop_record import Stop
 from robot.topics import DRIVE_SAFE, LLM_RESULT
+from safety.stop_file import TOPIC, StopFile
+from safety.stop_record import Stop
 from tests.deck_process import DeckProcess, deck
 from tests.ros.peer import Peer
 from tests.ros.supervised import until_state

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from launcher.client.client import running
-from robot.safety.stop_file import KeptStop, StopFile
-from robot.safety.stop_record import Stop, StopRecord
+from safety.stop_file import KeptStop, StopFile
+from safety.stop_record import Stop, StopRecord
 from tests.deck_process import DeckProcess, alive, deck
 from tests.ros.supervised import end_sessions
 from tests.unit.profile_files import written

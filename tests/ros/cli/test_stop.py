@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from robot.safety.stop_file import StopFile
+from safety.stop_file import StopFile
 from tests.deck_process import deck
 from tests.ros.node_process import NodeProcess
 from tests.ros.supervised import SLEEPER, Launch

@@ -20,7 +20,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
-from robot.safety.known_stops import LATE_NS
+from safety.known_stops import LATE_NS
 from tests.ros.node_process import NodeProcess
 from tests.ros.peer import DISCOVERY, LATCHED, ROOT, Peer
 from tests.waiting import comes, wait_until

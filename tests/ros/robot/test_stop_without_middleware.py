@@ -16,7 +16,7 @@ from launcher.client.stop_road import StopRoad
 from launcher.control.socket import connect
 from launcher.rundir import run_dir
 from launcher.wire import VERSION, encode
-from robot.safety.stop_file import StopFile
+from safety.stop_file import StopFile
 from tests.ros.node_process import NodeProcess
 from tests.ros.supervised import SLEEPER, Launch, running_pid
 from tests.waiting import until, wait_until

@@ -16,7 +16,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
 from graph.observer.requests import CallService, ReadParameters, SendGoal, SetParameters, StartPublishing
-from robot.topics import EMERGENCY_STOP
+from safety.topics import EMERGENCY_STOP
 from tests.ros.observing import Peer as Process
 from tests.ros.observing import Watcher
 from tests.ros.peer import Peer

@@ -15,7 +15,8 @@ from textual.widgets import OptionList, Static
 from brain.settings import settings_path
 from graph.data import Sample
 from graph.observer.requests import Publish
-from robot.topics import LLM_RAW_JSON, LLM_RESULT, SAFETY_STATE, SONAR_FRONT
+from robot.topics import LLM_RAW_JSON, LLM_RESULT, SONAR_FRONT
+from safety.topics import SAFETY_STATE
 from tests.model_server import KEY, Exchange, ModelServer, obeys
 from tests.tui.composer.test_composer import PARSER, ComposerStage
 from tests.tui.recorded import RecordedGraph, RecordedOpener, lesson_update

@@ -131,7 +131,7 @@ def simulation(*samples: Any) -> tuple[RecordedOpener, RecordedGraph]:
     lines = [ParameterRow(name, "string", "fine") for name in ("pico", "tof_front", "tof_rear")]
     rows = (*lines, ParameterRow("battery", "double", 7.4))
     graph.node_parameters[MOCK] = ParametersResult(MOCK, rows)
-    robot = NodeStatus("mock_robot", "nodes.mock_robot", NodeState.READY, pid=4199)
+    robot = NodeStatus("mock_robot", "nodes.mock_robot", NodeState.READY, pid=4199, roles=("simulator",))
     link: Any = drivers.link
     link.nodes["mock_robot"] = robot
     return RecordedOpener(link, graph), graph

@@ -16,9 +16,9 @@ from textual.widgets import Input
 
 from graph.observer.requests import ObserverError, Publish, Request, StopCommanding
 from launcher.status import NodeState
-from robot.safety.stop_file import BY_SCREEN, StopFile
-from robot.safety.stop_record import Stop
-from robot.topics import EMERGENCY_STOP, SAFETY_STATE
+from safety.stop_file import BY_SCREEN, StopFile
+from safety.stop_record import Stop
+from safety.topics import EMERGENCY_STOP, SAFETY_STATE
 from tests.tui.recorded import NOW_S, TOPICS, RecordedGraph, RecordedOpener, RecordedSession, lesson_update, sample
 from tests.tui.recorded_emergency import GATE, held, obeyed, said, word
 from tests.tui.snapshots import opened, seen, settle

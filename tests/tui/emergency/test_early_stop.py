@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 from graph.observer.requests import Publish
 from launcher.errors import UsageError
 from launcher.status import NodeState
-from robot.topics import EMERGENCY_STOP
+from safety.topics import EMERGENCY_STOP
 from tests.tui.recorded import NODES, NOW_S, TOPICS, RecordedGraph, RecordedOpener, RecordedSession, lesson_update
 from tests.tui.recorded_emergency import GATE, obeyed, word
 from tests.tui.snapshots import LESSON_9, opened, settle

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from graph.data import GraphUpdate, Sample
-from robot.topics import EMERGENCY_STATE, EMERGENCY_STOP
+from safety.topics import EMERGENCY_STATE, EMERGENCY_STOP
 from tests.tui.recorded import NOW_S, lesson_update
 from tests.tui.recorded_emergency import CHASSIS, GATE, gate_says, held, obeyed, said, word
 from tui.emergency.state import TOPIC_TYPE, Emergency

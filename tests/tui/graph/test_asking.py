@@ -14,7 +14,7 @@ from graph.data import CallResult, GoalStatus, SeenGoal
 from graph.observer.requests import CallService, CancelGoal, CancelSeenGoal, ForgetGoal, SendGoal
 from tests.tui.graph_stage import GraphStage, opened
 from tests.tui.recorded import RecordedGraph
-from tui.graph.places import GraphKind, GraphPlace
+from tui.graph.index import GraphKind, GraphPlace
 
 pytestmark = pytest.mark.nightly
 

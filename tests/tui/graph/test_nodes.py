@@ -17,7 +17,7 @@ from tests.tui.recorded_nodes import NODE_ROWS, graph_update, ill_graph
 from tui import clock
 from tui.dialogs.choice import ChoiceScreen
 from tui.frame.key_bar import KeyBar
-from tui.graph.places import GraphKind, GraphPlace
+from tui.graph.index import GraphKind, GraphPlace
 from tui.topics.screen import TopicsScreen
 from tui.widgets.tab_line import TabLine
 

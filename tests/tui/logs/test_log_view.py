@@ -14,9 +14,8 @@ from textual.pilot import Pilot
 
 from launcher.status import LogLine, Severity
 from tests.tui.logs.bare_log import LogApp, line, lines, rows, shown, texts
-from tui.log_view.index import LogFilter, folded, folded_rows
+from tui.log_view.index import LineRing, LogFilter, folded, folded_rows
 from tui.log_view.pane import LogBar, LogPrompt
-from tui.log_view.ring import LineRing
 
 
 async def test_scrolling_up_pauses_counts_what_is_new_and_end_follows() -> None:

@@ -15,7 +15,7 @@ from space.drawing.paints import Tint
 from tests.tui.recorded import RecordedGraph, RecordedOpener
 from tests.tui.recorded_space import SPACE_TOPICS, frames, space_update
 from tests.tui.space.stage_runs import at_work, robot_in_a_room
-from tui.session.past import SONARS
+from tui.session.past import TRENDS
 from tui.space.rows import LayerRows
 from tui.space.screen import SpaceScreen
 from tui.space.view import SpaceView
@@ -35,7 +35,7 @@ def rows_of(screen: SpaceScreen) -> str:
 
 def tints(screen: SpaceScreen) -> set[int]:
     view = screen.view
-    picture = screen.stage.picture(view.camera, *view.size, view.aim)
+    picture = screen.stage.picture(view.aim, view.camera, *view.size)
     return {*picture.front.ravel().tolist(), *picture.back.ravel().tolist()}
 
 
@@ -48,7 +48,7 @@ async def show(pilot: Pilot[Any], graph: RecordedGraph, update: GraphUpdate) -> 
 async def test_layers_come_from_the_types_of_the_topics() -> None:
     opener = robot_in_a_room()
     async with at_work(opener) as (screen, _pilot):
-        assert opener.graph.wanted.watched == WATCHED | set(SONARS)
+        assert opener.graph.wanted.watched == WATCHED | set(TRENDS)
         assert "/markers" in opener.graph.wanted.followed
         shown = rows_of(screen)
         for name in ("frames", "/map", "/markers", "/scan"):

@@ -22,8 +22,9 @@ from graph.observer.requests import (
     StopCommanding,
 )
 from launcher.events import ClosedEvent
-from robot.safety.gate_report import gate_in
-from robot.topics import DRIVE, DRIVE_TELEOP, SAFETY_STATE
+from robot.topics import DRIVE, DRIVE_TELEOP
+from safety.gate_report import gate_in
+from safety.topics import SAFETY_STATE
 from tests.tui.recorded import (
     NOW_S,
     TOPICS,
@@ -41,7 +42,8 @@ from tui import clock
 from tui.app import DeckApp
 from tui.deck.screen import LessonDeck
 from tui.emergency.gate import gate_words
-from tui.teleop.keys import DRIVE_TYPE, FIRST_HOLD_S, Move
+from tui.teleop.actions import Move
+from tui.teleop.keys import DRIVE_TYPE, FIRST_HOLD_S
 from tui.teleop.widget import TeleopPanel
 from tui.terminal.stall_detector import DRAIN_S
 

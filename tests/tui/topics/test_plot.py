@@ -16,7 +16,6 @@ from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_upda
 from tests.tui.snapshots import Look, settle
 from tui.topics.plot import TopicPlot, axis_for, curve
 from tui.topics.plot_history import History, PlotField
-from tui.topics.plotting import PlotPlace
 from tui.topics.screen import TopicsScreen
 
 FLOAT = "std_msgs/msg/Float32"
@@ -115,7 +114,7 @@ async def stage() -> Any:
 async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(stage: Any) -> None:
     screen, pilot, graph = stage
     await pilot.press("V")
-    assert screen.plotting.place is PlotPlace.NONE
+    assert screen.plot_place == "none"
     await pilot.press("enter", "down", "down", "V")
     await pilot.pause()
     assert screen.plot.fields == (PlotField("/drive", ("drive", "steering_angle")),)
@@ -132,5 +131,5 @@ async def test_a_key_plots_the_number_at_the_cursor_and_every_message_is_wanted(
     await pilot.press("home", "down", "down", "V")
     await pilot.pause()
     assert not screen.plot.fields
-    assert screen.plotting.place is PlotPlace.NONE
+    assert screen.plot_place == "none"
     assert "/drive" not in screen.follow_topics()

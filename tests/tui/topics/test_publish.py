@@ -12,13 +12,13 @@ from textual.widgets import Static
 
 from graph.data import Sample
 from graph.observer.requests import Publish, StartPublishing, StopPublishing, StopPublishingAll
-from robot.topics import EMERGENCY_STOP
+from safety.topics import EMERGENCY_STOP
 from tests.tui.recorded import NOW_S, RecordedGraph, RecordedOpener, lesson_update
 from tests.tui.snapshots import opened
 from tests.waiting import until
 from tui.app import DeckApp
 from tui.emergency.state import TOPIC_TYPE
-from tui.topics.publish import PublicationList, PublishDialog
+from tui.topics.publish import PublishDialog
 from tui.topics.screen import TopicsScreen
 
 DRIVE = "ackermann_msgs/msg/AckermannDriveStamped"
@@ -54,7 +54,7 @@ class Desk:
 
     @property
     def said(self) -> str:
-        return str(self.dialog.rate.query_one("#rate-said", Static).content)
+        return str(self.dialog.query_one("#rate-said", Static).content)
 
     def fill(self, old: str, new: str) -> None:
         text = self.dialog.form.text
@@ -72,8 +72,8 @@ async def desk() -> AsyncIterator[Desk]:
 
 async def test_a_message_goes_out_once_and_its_listeners_are_told(desk: Desk) -> None:
     await desk.open()
-    assert desk.dialog.target.topic == "/drive"
-    assert desk.dialog.target.type.value == DRIVE
+    assert desk.dialog.topic == "/drive"
+    assert desk.dialog.type.value == DRIVE
     desk.fill(" speed: 0.0", " speed: 0.2")
     await desk.pilot.press("ctrl+s")
     await desk.says("Sent: 1 subscriber got it.")
@@ -85,7 +85,7 @@ async def test_a_message_goes_out_once_and_its_listeners_are_told(desk: Desk) ->
 async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> None:
     await desk.open()
     desk.fill(" speed: 0.0", " speed: fast")
-    desk.dialog.rate.field.focus()
+    desk.dialog.rate_field.focus()
     for key in ("ctrl+s", "ctrl+g"):
         await desk.pilot.press(key)
         await desk.says("Not sent")
@@ -99,16 +99,16 @@ async def test_what_is_wrong_publishes_nothing_and_is_gone_to(desk: Desk) -> Non
 
 async def test_a_message_is_published_at_a_rate_until_it_is_stopped(desk: Desk) -> None:
     await desk.open()
-    desk.dialog.rate.field.value = "2,5"
+    desk.dialog.rate_field.value = "2,5"
     await desk.pilot.press("ctrl+g")
     await desk.says("Publishing to /drive at 2.5 Hz.")
     assert [(topic, hz) for topic, _type, _value, hz in desk.graph.asked(StartPublishing)] == [("/drive", 2.5)]
-    listed = desk.dialog.query_one(PublicationList)
-    await until(lambda: listed.chosen_number == 1, "the publication in the list")
+    listed = desk.dialog.query_one("#publications")
+    await until(lambda: desk.dialog.chosen_number == 1, "the publication in the list")
     # Another on the same topic takes its place.
     await desk.pilot.press("ctrl+g")
     await until(lambda: desk.graph.asked(StopPublishing) == [(1,)], "the end of the first")
-    await until(lambda: listed.chosen_number == 2, "the second in the list")
+    await until(lambda: desk.dialog.chosen_number == 2, "the second in the list")
     await desk.pilot.press("f12")
     await desk.says("Stopped: /drive")
     assert desk.graph.asked(StopPublishing) == [(1,), (2,)]
@@ -125,7 +125,7 @@ async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter
     assert desk.graph.asked(StopPublishing) == []
     await desk.open("/ai_command")
     await until(lambda: desk.dialog.is_publishing, "what is published")
-    desk.dialog.query_one(PublicationList).focus()
+    desk.dialog.query_one("#publications").focus()
     await desk.pilot.press("enter")
     assert desk.graph.asked(StopPublishing) == [(1,)]
 
@@ -133,24 +133,24 @@ async def test_what_is_published_outlives_the_dialog_and_can_be_stopped_by_enter
 async def test_a_rate_that_is_none_is_refused(desk: Desk) -> None:
     await desk.open()
     for rate in ("0", "-1", "nan", "inf", "fast", "", "1e9"):
-        desk.dialog.rate.field.value = rate
-        desk.dialog.rate.tell(lambda: "", "")
+        desk.dialog.rate_field.value = rate
+        desk.dialog.tell(lambda: "", "")
         desk.dialog.form.editor.focus()
         await desk.pilot.press("ctrl+g")
         await desk.says("The rate is")
         assert desk.graph.asked(StartPublishing) == []
-        assert desk.dialog.focused is desk.dialog.rate.field
+        assert desk.dialog.focused is desk.dialog.rate_field
 
 
 async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
     await desk.open()
-    target = desk.dialog.target
-    target.field.focus()
-    target.field.value = "my/new_one"
-    target.type.field.focus()
-    target.type.field.value = "float3"
-    await until(lambda: target.type.is_listing, "the types that fit")
-    assert target.type.fitting()[0] == "std_msgs/msg/Float32"
+    dialog = desk.dialog
+    dialog.topic_field.focus()
+    dialog.topic_field.value = "my/new_one"
+    dialog.type.field.focus()
+    dialog.type.field.value = "float3"
+    await until(lambda: dialog.type.is_listing, "the types that fit")
+    assert dialog.type.fitting()[0] == "std_msgs/msg/Float32"
     # What is only half typed is no type yet.
     await desk.pilot.press("ctrl+s")
     await desk.says("Choose the type of /my/new_one.")
@@ -165,8 +165,8 @@ async def test_a_new_topic_needs_a_type_which_is_completed(desk: Desk) -> None:
 async def test_what_is_no_name_of_a_topic_is_refused(desk: Desk) -> None:
     await desk.open()
     for name in ("", "/", "/1x", "a b", "/a//b", "/привет", "~/x", "/a/"):
-        desk.dialog.target.field.value = name
-        desk.dialog.rate.tell(lambda: "", "")
+        desk.dialog.topic_field.value = name
+        desk.dialog.tell(lambda: "", "")
         await desk.pilot.press("ctrl+s")
         await desk.says("Not a topic name")
         assert desk.graph.asked(Publish) == []

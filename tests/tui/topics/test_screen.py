@@ -12,12 +12,14 @@ from textual.widgets import Static
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
+from graph.qos import Mismatch
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
 from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, jpeg_message, opened, row, with_camera, with_row
 from tests.waiting import until
+from text.sentences import say
 from tui.frame.key_bar import KeyBar
-from tui.session.past import SONARS
+from tui.session.past import TRENDS
 from tui.widgets import image_view as newest_picture
 
 ROSOUT = TopicRow("/rosout", ("rcl_interfaces/msg/Log",), 1, 0)
@@ -41,7 +43,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     stage: TopicsStage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The one that is chosen first is asked for at first.
-    await until(lambda: stage.graph.wanted.watched - set(SONARS), "the first topic asked for")
+    await until(lambda: stage.graph.wanted.watched - set(TRENDS), "the first topic asked for")
     asked: list[set[str]] = []
     monkeypatch.setattr(stage.graph, "want", lambda interest: asked.append(set(interest.watched)))
     # However long the keys take here, they come before the walk is over.
@@ -51,7 +53,7 @@ async def test_walking_past_topics_subscribes_none_of_them(
     monkeypatch.setattr("tui.topics.screen.SETTLED_S", 0.01)
     await stage.pilot.press("down")
     await until(lambda: asked, "the last topic asked for")
-    assert [topics - set(SONARS) for topics in asked] == [{"/drive"}]
+    assert [topics - set(TRENDS) for topics in asked] == [{"/drive"}]
 
 
 @pytest.mark.parametrize(
@@ -72,12 +74,10 @@ async def test_why_there_is_no_topic_is_told(
 
 
 async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -> None:
-    facts = {
-        "policy": "reliability", "publisher": "/lidar", "subscriber": "/brain",
-        "offered": "best_effort", "requested": "reliable",
-    }  # fmt: skip
+    found = Mismatch("reliability", "/lidar", "/brain", "best_effort", "reliable")
+    detail = say("{what} {mend}", what=found.what, mend=found.mend)
     await stage.choose(SONAR)
-    await stage.show(with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, facts=facts)))
+    await stage.show(with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, detail=detail)))
     words = " ".join(stage.echo().split())
     assert words.startswith("QoS is incompatible")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -17,7 +16,7 @@ from tests.tui.recorded import TOPICS, topic
 from tests.tui.snapshots import seen
 from text.i18n import _, set_language
 from tui.topics.endpoints import endpoint_lines
-from tui.topics.table import COLUMNS, TopicsOrder, TopicsTable, age_text, bandwidth_text, placed, state_text
+from tui.topics.table import COLUMNS, TopicsOrder, TopicsTable, age_text, bandwidth_text, fitting, state_text
 
 FLOAT = "std_msgs/msg/Float32"
 
@@ -33,7 +32,7 @@ FLOAT = "std_msgs/msg/Float32"
         ({"measured": False, "hz": None}, "– not measured"),
         ({"age_s": None, "hz": None}, "· waiting"),
         ({"detail": "peers disagree"}, "! peers disagree"),
-        ({"detail": "peers disagree", "facts": {"types": "a, b"}}, "! types differ"),
+        ({"detail": "peers disagree", "type_names": ("a", "b")}, "! types differ"),
         ({}, ""),
     ],
 )
@@ -57,12 +56,10 @@ def test_titles_and_states_fit_their_columns_in_every_language(language: str) ->
 
 
 @pytest.mark.parametrize("width", range(1, 220, 7))
-def test_columns_never_overlap_and_the_name_is_always_there(width: int) -> None:
-    places = placed(width)
-    assert places[0].column.id == "name"
-    ends = [(place.x, place.x + place.width) for place in places]
-    assert all(end < start for (_x, end), (start, _y) in pairwise(ends))
-    assert ends[-1][1] <= width
+def test_columns_fit_and_the_name_is_always_there(width: int) -> None:
+    fits = fitting(width)
+    assert fits[0][0].id == "name"
+    assert sum(wide + 1 for _column, wide in fits) - 1 <= width
 
 
 def test_rows_are_sorted_by_any_column_and_equal_ones_by_name() -> None:
@@ -120,9 +117,10 @@ async def test_an_update_draws_only_the_cells_whose_text_changed(monkeypatch: py
         assert asked == []
         faster = [replace(row, hz=11.0) if row.name == "/drive" else row for row in TOPICS]
         table.show_topics(faster)
-        hz = next(place for place in table._places if place.column.id == "hz")
+        hz = [column.id for column in table._fitting].index("hz")
         row = [row.name for row in table.shown].index("/drive")
-        assert asked == [Region(2 + hz.x, 1 + row, hz.width, 1)]
+        left = 2 + sum(width + 1 for width in table._widths[:hz])
+        assert asked == [Region(left, 1 + row, table._widths[hz], 1)]
 
 
 DOUBLE = "std_msgs/msg/Float64"

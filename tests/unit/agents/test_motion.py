@@ -34,10 +34,10 @@ from agents.tools import TOOLS, tools_for
 from launcher.consent import ALLOWED_FOR_S, AgentRules, Approval
 from launcher.errors import UsageError
 from robot.commands.schema import parse_llm
-from robot.safety.gate_report import Gate
-from robot.safety.moving_topics import MOVING_NAMES
+from safety.gate_report import Gate
 from tests.hostile_text import WORST
 from text.i18n import localized
+from text.robot import robot
 
 RULES = AgentRules(max_speed_m_s=0.2, max_distance_m=0.5)
 
@@ -137,7 +137,7 @@ def test_what_is_listed_is_allowed_and_nothing_else() -> None:
         check_call("/lamp_off", TRIGGER, ("/lamp_on",))
 
 
-@pytest.mark.parametrize("topic", sorted(KEPT | MOVING_NAMES))
+@pytest.mark.parametrize("topic", sorted(KEPT | robot().moving))
 def test_no_profile_opens_what_moves_or_what_safety_rests_on(topic: str) -> None:
     with pytest.raises(RefusedError, match="may move the robot"):
         check_publish(topic, STRING, (topic,))

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot.safety.known_stops import LATE_NS, Heard, KnownStops
-from robot.safety.stop_record import Stop, StopRecord
+from safety.known_stops import LATE_NS, Heard, KnownStops
+from safety.stop_record import Stop, StopRecord
 
 S = 1_000_000_000
 HOUR_NS = 3600 * S

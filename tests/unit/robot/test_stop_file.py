@@ -16,8 +16,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.safety.stop_file import BY_SCREEN, KeptStop, SavedStop, StopFile, stop_place
-from robot.safety.stop_record import MOST_HELD, MOST_RELEASED, Insistence, Stop, StopRecord, read_record
+from safety.stop_file import BY_SCREEN, KeptStop, SavedStop, StopFile, stop_place
+from safety.stop_record import MOST_HELD, MOST_RELEASED, Insistence, Stop, StopRecord, read_record
 from tests.waiting import wait_until
 
 FIRST, SECOND = Stop(5, 1), Stop(6, 1)
@@ -189,8 +189,8 @@ def test_no_stop_is_lost_beside_one_that_forgets_what_was_released(place: Path) 
     """As a free node does each second; here without a pause, from another process."""
     released = record(FIRST).freed()
     forget = (
-        "from robot.safety.stop_file import StopFile;"
-        "from robot.safety.stop_record import read_record;"
+        "from safety.stop_file import StopFile;"
+        "from safety.stop_record import read_record;"
         "file = StopFile(7, '/b');"
         f"record = read_record('', {released.texts()['released']!r})\n"
         "while True: file.forget(record)"

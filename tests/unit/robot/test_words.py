@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from robot.commands.brain import Decision, asks_to_stop, decide, spoken
 from robot.limits import SPEED, STEERING
 from robot.safety.distance import RangeState
-from robot.safety.moving_topics import moves
 from robot.words import STOP, DriveSetpoint, parse_spoken, parse_word
+from safety.moving_topics import moves
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from robot.safety.gate_report import Gate
+from safety.gate_report import Gate
 from text.i18n import set_language
 from tui.emergency.gate import held_words
 

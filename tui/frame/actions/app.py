@@ -75,8 +75,9 @@ def show_help(host: Host) -> None:
 
 def _shows(name: str) -> Action[Host]:
     entry = SCREENS[name]
+    can = _has_session if entry.is_there else lambda _host: False
 
-    @action(f"screen.{name}", entry.key, entry.title, entry.about, when=_has_session)
+    @action(f"screen.{name}", entry.key, entry.title, entry.about, when=can)
     async def show(host: Host) -> None:
         await host.show_screen(name)
 
@@ -163,5 +164,5 @@ def leave(host: Host) -> None:
 
 
 APP_ACTIONS = actions_of(__name__)
-TABS = [show for name, show in SHOW.items() if name != "wall"]
+TABS = [show for name, show in SHOW.items() if name != "wall" and SCREENS[name].is_there]
 """In the order in which the top line names them."""
