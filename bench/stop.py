@@ -130,10 +130,9 @@ def nodes(folder: Path) -> Iterator[None]:
     specs = load_profile(ROOT / "profiles" / "robot.yaml").nodes
     with ExitStack() as stack:
         for name in CHAIN:
-            own = dict(specs[name].params)
-            if name in PORTS:
-                own["port"] = str(folder / PORTS[name])
-            stack.enter_context(running(*replace(specs[name], params=own).argv()[1:], domain=DOMAIN))
+            port = {"port": str(folder / PORTS[name])} if name in PORTS else {}
+            node = replace(specs[name], params={**specs[name].params, **port})
+            stack.enter_context(running(*node.argv()[1:], domain=DOMAIN))
         stack.enter_context(running("-m", "bench.stop", "command", domain=DOMAIN))
         yield
 

@@ -37,11 +37,6 @@ STEADY_S = 0.5
 """How long all must stay up: a node that fails does so right after its start."""
 
 
-def _up_options(parser: Parser) -> None:
-    add_profile(parser)
-    add_profile_options(parser)
-
-
 def _logs_options(parser: Parser) -> None:
     parser.add_argument("node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default"))
     parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
@@ -51,7 +46,7 @@ def _logs_options(parser: Parser) -> None:
     parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
 
 
-@command("up", _up_options)
+@command("up", add_profile, add_profile_options)
 async def up_command(options: Namespace) -> int:
     """Start a profile in the background, wait until it is up, and show its nodes."""
     profile = profile_to_run(options)
@@ -202,19 +197,13 @@ async def _attached(name: str | None, node: str | None) -> client.SupervisorClie
             await link.aclose()
             raise UnknownNodeError(node, known)
         return link
-    having: list[client.SupervisorClient] = []
-    known_nodes: list[str] = []
-    for session in sessions:
-        link = await client.attach(session.run_id)
-        known_nodes += link.nodes
-        if node in link.nodes:
-            having.append(link)
-        else:
+    links = [await client.attach(session.run_id) for session in sessions]
+    having = [link for link in links if node in link.nodes]
+    for link in links:
+        if having != [link]:
             await link.aclose()
     if len(having) == 1:
         return having[0]
-    for link in having:
-        await link.aclose()
     if not having:
-        raise UnknownNodeError(node, known_nodes)
+        raise UnknownNodeError(node, [name for link in links for name in link.nodes])
     return await client.attach(None)

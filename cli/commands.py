@@ -65,11 +65,11 @@ HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
 WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
 """Options that may come before the command word."""
-_ANNOUNCED: dict[str, tuple[Callable[[Parser], None], Work]] = {}
+_ANNOUNCED: dict[str, tuple[Sequence[Callable[[Parser], None]], Work]] = {}
 
 
-def command(name: str, options: Callable[[Parser], None]) -> Callable[[T], T]:
-    """Announce a function as a command, which returns the exit code; `options` declares what it takes."""
+def command(name: str, *options: Callable[[Parser], None]) -> Callable[[T], T]:
+    """Announce a function as a command, which returns the exit code; `options` declare what it takes."""
 
     def announced(work: T) -> T:
         _ANNOUNCED[name] = (options, work)
@@ -86,7 +86,7 @@ def handler_of(name: str) -> Handler:
     return handle
 
 
-def _announced(name: str) -> tuple[Callable[[Parser], None], Work]:
+def _announced(name: str) -> tuple[Sequence[Callable[[Parser], None]], Work]:
     with held():
         import_module("cli.screen" if name == OPEN else COMMANDS[name].module)
     return _ANNOUNCED[name]
@@ -124,8 +124,8 @@ def parser_of(name: str) -> Parser:
     if name == OPEN:
         return _open_parser()
     parser = Parser(prog=f"deck {name}", description=_(COMMANDS[name].help), allow_abbrev=False)
-    _announced(name)[0](parser)
-    add_language(parser)
+    for declare in (*_announced(name)[0], add_language):
+        declare(parser)
     return parser
 
 

@@ -29,12 +29,10 @@ def _diagnostics_options(parser: Parser) -> None:
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, default=3.0, help=_("listen for S seconds, 3 by default")
     )
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
-    add_json(parser)
     parser.epilog = _("Exit code: 0 if everything is all right, 1 if anything is not, 2 if nobody says anything.")
 
 
-@command("diagnostics", _diagnostics_options)
+@command("diagnostics", _diagnostics_options, add_graph, add_json)
 def diagnostics_command(options: Namespace) -> int:
     """Listen for a moment, and show the tree; return 1 if anything is not all right."""
     with domain_view(options.domain, options.discovery, followed=frozenset({DIAGNOSTICS})) as view:
@@ -87,11 +85,5 @@ def _show(rows: tuple[TreeRow, ...], left_out: int) -> None:
 
 def _for_programs(path: tuple[str, ...], record: StatusRecord) -> dict[str, object]:
     status = record.status
-    return {
-        "name": status.name,
-        "path": list(path),
-        "level": record.level.name,
-        "message": status.message,
-        "hardware_id": status.hardware,
-        "values": dict(status.values),
-    }
+    rest = {"level": record.level.name, "hardware_id": status.hardware, "values": dict(status.values)}
+    return {"name": status.name, "path": list(path), "message": status.message, **rest}

@@ -15,6 +15,7 @@ from cli.commands import Parser, command
 from cli.domains import beyond_this_machine
 from cli.observing import DomainView, domain_view
 from cli.options import add_graph, add_json, seconds
+from cli.report import fields_of
 from text.i18n import _, localized
 from text.output import DIM, RED, Paint, json_text, table, write
 from tui.frame_tree import cells
@@ -36,15 +37,13 @@ def _frames_options(parser: Parser) -> None:
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, help=_("listen for S seconds; 3 by default")
     )
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
-    add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if nothing is wrong with the frames, 1 if something is or there are none, 2 "
         "if ROS or the command line cannot be used."
     )
 
 
-@command("frames", _frames_options)
+@command("frames", _frames_options, add_graph, add_json)
 def frames_command(options: Namespace) -> int:
     from graph.frames.findings import findings_in
     from graph.frames.tree import FrameTree
@@ -86,16 +85,9 @@ def _for_programs(row: FrameRow) -> dict[str, Any]:
         "frame": newest.child,
         "parent": newest.parent,
         "static": row.is_static,
-        "count": row.count,
         "refused": row.faults,
-        "hz": row.hz,
-        "age_s": row.age_s,
-        "delay_s": row.delay_s,
-        "publishers": list(row.publishers),
-        "certain": row.certain,
-        "gone": row.gone,
-        "translation": list(newest.transform.translation),
-        "rotation": list(newest.transform.rotation),
+        **fields_of(row, "count", "hz", "age_s", "delay_s", "publishers", "certain", "gone"),
+        **fields_of(newest.transform, "translation", "rotation"),
     }
 
 

@@ -103,7 +103,7 @@ def grade_command(options: Namespace) -> int:
     grades = run(_graded(grade_all(terms, chosen, jobs=options.jobs, domains=domains, on_step=report.step), report))
     report.end(grades)
     if writer is not None or output is not None:
-        _put(writer(grades) if writer else "\n".join(report.lines), output)
+        _put(writer(grades) if writer else "\n".join(report.lines) + "\n", output)
     return exit_code(grades, options.format)
 
 
@@ -155,12 +155,11 @@ def _writable(name: str) -> Path:
 
 
 def _put(text: str, output: Path | None) -> None:
-    text = text if text.endswith("\n") else f"{text}\n"
     if output is not None:
         # Lines end as the format has it.
         output.write_bytes(text.encode())
         return
-    sys.stdout.write(text)
+    sys.stdout.write(text if text.endswith("\n") else f"{text}\n")
     sys.stdout.flush()
 
 
@@ -194,15 +193,6 @@ class _GradeReport:
         if self._count == 1 and self._aloud:
             say_error(f"{step.title}: {_(_STATES[step.result.state.value])}")
 
-    def _say_step(self, step: StepGrade) -> None:
-        state = step.result.state
-        words = f"{_(_STATES[state.value]):{_WIDTH}}"
-        points = f"{step.result.earned}/{step.result.points}"
-        rest = f"{points:>6}  {step.title}"
-        self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
-        for more in filter(None, (step.message, step.look)):
-            self._write(f"{'':{_WIDTH + 8}}{more}")
-
     def grade(self, grade: Grade) -> None:
         self._done += 1
         if self._count > 1:
@@ -229,18 +219,18 @@ class _GradeReport:
 
     def _end_of_one(self, grade: Grade) -> None:
         for step in grade.steps:
-            self._say_step(step)
+            state = step.result.state
+            words = f"{_(_STATES[state.value]):{_WIDTH}}"
+            points = f"{step.result.earned}/{step.result.points}"
+            rest = f"{points:>6}  {step.title}"
+            self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
+            for more in filter(None, (step.message, step.look)):
+                self._write(f"{'':{_WIDTH + 8}}{more}")
         for words in grade.remarks:
             self._write(words)
-        self._write(
-            _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})").format(
-                state=_(_STATES[grade.state.value]),
-                points=grade.points,
-                most=grade.max_points,
-                s=grade.seconds,
-                seed=grade.seed,
-            )
-        )
+        words = _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})")
+        figures = {"points": grade.points, "most": grade.max_points, "s": grade.seconds, "seed": grade.seed}
+        self._write(words.format(state=_(_STATES[grade.state.value]), **figures))
         if grade.bag is not None:
             self._write(_("recorded in {folder}").format(folder=plain(str(grade.bag))))
 

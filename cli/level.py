@@ -25,13 +25,12 @@ def _level_options(parser: Parser) -> None:
         choices=tuple(LOG_LEVELS),
         help=_("from this severity on it is to log; without it, the level is only shown"),
     )
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.epilog = _(
         "Exit code: 0, or 1 if the node is not there, does not answer or does not let others change its level."
     )
 
 
-@command("level", _level_options)
+@command("level", _level_options, add_graph)
 def level_command(options: Namespace) -> int:
     from graph.observer.requests import LogLevel
 

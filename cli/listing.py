@@ -50,12 +50,10 @@ def _check_options(parser: Parser) -> None:
         action="store_true",
         help=_("check the devices too, with --hardware real: found, permitted, free, answering"),
     )
-    add_json(parser)
-    add_profile_options(parser)
     parser.epilog = _("Exit code: 0 if everything is all right, else 2. Nothing is moved.")
 
 
-@command("check", _check_options)
+@command("check", _check_options, add_json, add_profile_options)
 def check_command(options: Namespace) -> int:
     """Report problems of one profile, of all, or of devices; return 0 if there are none."""
     if options.preflight:

@@ -120,9 +120,9 @@ def add_domain(parser: ArgumentParser, help_text: str) -> None:
     parser.add_argument("--domain", metavar="N", type=domain, help=help_text)
 
 
-def add_graph(parser: ArgumentParser, help_text: str) -> None:
+def add_graph(parser: ArgumentParser, help_text: str = "") -> None:
     """Add the ROS domain, and how far to look for nodes: what joins a graph that somebody runs."""
-    add_domain(parser, help_text)
+    add_domain(parser, help_text or _("ROS domain; by default that of the running robot"))
     parser.add_argument(
         "--discovery",
         choices=("localhost", "subnet"),

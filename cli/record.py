@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 from cli.commands import Parser, command
 from cli.domains import beyond_this_machine, running_domain
 from cli.options import add_graph, add_json, folder, seconds
+from cli.report import fields_of
 from graph.bag.errors import BagError
 from graph.heavy_types import IMAGES, POINT_CLOUD
 from launcher.errors import UsageError
@@ -56,15 +57,13 @@ def _record_options(parser: Parser) -> None:
         ),
     )
     parser.add_argument("--for", dest="seconds", metavar="S", type=seconds, help=_("stop after S seconds"))
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
-    add_json(parser)
     parser.epilog = _(
         "Exit code: 0 if the recording is complete, 1 if it broke off or no messages "
         "arrived, 2 if it could not start."
     )
 
 
-@command("record", _record_options)
+@command("record", _record_options, add_graph, add_json)
 def record_command(options: Namespace) -> int:
     """Record until stopped; return 0 if the bag is complete and not empty."""
     from graph.recording.recorder import Recorder
@@ -153,13 +152,8 @@ def _table(status: RecordingStatus) -> None:
 
 
 def _figures(status: RecordingStatus) -> dict[str, object]:
-    return {
-        "seconds": round(status.seconds, 3),
-        "messages": status.messages,
-        "bytes": status.bytes,
-        "bytes_per_s": round(status.bytes_per_s),
-        "lost": status.lost,
-    }
+    rounded = {"seconds": round(status.seconds, 3), "bytes_per_s": round(status.bytes_per_s)}
+    return {**rounded, **fields_of(status, "messages", "bytes", "lost")}
 
 
 def _object(event: str, **fields: object) -> None:

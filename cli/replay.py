@@ -56,10 +56,9 @@ def _replay_options(parser: Parser) -> None:
     )
     parser.add_argument("--motion", action="store_true", help=_("with --publish: also what moves a robot"))
     add_graph(parser, _("with --publish: ROS domain; by default that of the running robot"))
-    add_screen(parser)
 
 
-@command("replay", _replay_options)
+@command("replay", _replay_options, add_screen)
 def replay_command(options: Namespace) -> int:
     """Show a bag on the screen until the user quits, or publish it; return 2 if it is not a bag."""
     if (options.motion or options.domain is not None) and not options.publish:

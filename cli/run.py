@@ -37,15 +37,13 @@ def _run_options(parser: Parser) -> None:
     parser.add_argument(
         "--for", dest="seconds", metavar="S", type=seconds, help=_("stop S seconds after all nodes are ready")
     )
-    add_json(parser)
-    add_profile_options(parser)
     parser.epilog = _(
         "Ctrl-C stops the nodes, dependants first; a second Ctrl-C does not wait. Exit code: 0 if"
         " every node stayed healthy, 1 if one failed, 2 if nothing could be started."
     )
 
 
-@command("run", _run_options)
+@command("run", _run_options, add_json, add_profile_options)
 def run_command(options: Namespace) -> int:
     """Start a profile, report events, stop it; return 0 if every node stayed healthy."""
     profile = profile_to_run(options)

@@ -18,7 +18,7 @@ from text.sentences import say
 from text.suggestions import nearest
 
 
-@command(OPEN, lambda _parser: None)
+@command(OPEN)
 def open_command(options: Namespace) -> int:
     """Show the screen; without a terminal, behave like `deck run`."""
     if options.version:
@@ -59,12 +59,7 @@ def profile_or_command(name: str) -> Path:
         raise UsageError(words) from error
 
 
-def _attach_options(parser: Parser) -> None:
-    add_running(parser)
-    add_screen(parser)
-
-
-@command("attach", _attach_options)
+@command("attach", add_running, add_screen)
 def attach_command(options: Namespace) -> int:
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
@@ -82,11 +77,10 @@ def attach_command(options: Namespace) -> int:
 
 def _watch_options(parser: Parser) -> None:
     add_graph(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
-    add_screen(parser)
     parser.epilog = _("Deck starts and stops nothing here.")
 
 
-@command("watch", _watch_options)
+@command("watch", _watch_options, add_screen)
 def watch_command(options: Namespace) -> int:
     domain = choose_domain(options.domain, None, os.environ)
     if not has_terminal():

@@ -123,11 +123,10 @@ end
 def _shell_options(parser: Parser) -> None:
     parser.add_argument("profile", nargs="?", metavar=_("PROFILE"), help=_("by default the lesson that is running"))
     parser.add_argument("-c", dest="line", metavar=_("LINE"), help=_("run this command line and end"))
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
     parser.epilog = _("The shell is that of SHELL. The exit code is that of the shell or command.")
 
 
-@command("shell", _shell_options)
+@command("shell", _shell_options, add_graph)
 def shell_command(options: Namespace) -> int:
     """Become the shell; return only if that is impossible."""
     name, domain, discovery = _place(options)

@@ -54,7 +54,7 @@ def _view_options(parser: Parser) -> None:
 
 
 def _add_common(parser: Parser) -> None:
-    add_graph(parser, _("ROS domain; by default that of the running robot"))
+    add_graph(parser)
     parser.add_argument(
         "--json", action="store_true", help=_("print JSON, for programs, and end with standard input")
     )

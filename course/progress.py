@@ -126,21 +126,15 @@ def _read(path: Path) -> tuple[Progress, bool]:
     except FileNotFoundError:
         return Progress(), True
     except (OSError, ValueError):
-        return Progress(), False
-    if not isinstance(raw, dict):
-        return Progress(), False
-    last, lessons = raw.get("last", ""), raw.get("lessons", {})
+        raw = None
+    last, lessons = (raw.get("last", ""), raw.get("lessons", {})) if isinstance(raw, dict) else (None, None)
     sound = isinstance(last, str) and isinstance(lessons, dict)
     found: dict[str, dict[str, StepProgress]] = {}
     for name, steps in lessons.items() if isinstance(lessons, dict) else ():
-        if not isinstance(steps, dict):
-            sound = False
-            continue
-        for step, raw_step in steps.items():
+        for step, raw_step in steps.items() if isinstance(steps, dict) else [("", None)]:
             one = _step(raw_step)
-            if one is None:
-                sound = False
-            else:
+            sound = sound and one is not None
+            if one is not None:
                 found.setdefault(name, {})[step] = one
     return Progress(last if isinstance(last, str) else "", found), sound
 

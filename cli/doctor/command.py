@@ -25,14 +25,13 @@ def _doctor_options(parser: Parser) -> None:
         "--graph", action="store_true", help=_("examine the running ROS graph instead, whoever has started its nodes")
     )
     add_graph(parser, _("with --graph: ROS domain; by default that of the running robot"))
-    add_json(parser)
     parser.epilog = _(
         "Exit code: 0, or 1 if something essential is missing. With --graph: 0 without findings, 1 "
         "with some, 2 if there is no graph to look at."
     )
 
 
-@command("doctor", _doctor_options)
+@command("doctor", _doctor_options, add_json)
 def doctor_command(options: Namespace) -> int:
     """Examine everything, or try the language model; return 1 if something essential is missing.
 

@@ -31,12 +31,10 @@ ENOUGH_FRAMES = 3
 
 def ask(kind: str, line: OpenPort) -> Finding:
     """Check the device at a port; raises OSError if it disappears meanwhile."""
-    if kind == "pico":
-        return _pico(line)
-    if kind == "lsc16":
-        return _servos(line)
     if kind in ("tf_luna", "tfmini_s"):
         return _sonar(kind, line)
+    if kind in ("pico", "lsc16"):
+        return (_pico if kind == "pico" else _servos)(line)
     return good(_("it can be opened; how it should answer is not known"))
 
 

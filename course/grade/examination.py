@@ -107,8 +107,22 @@ async def examined(place: Path, request: ExamRequest, room: Sequence[str]) -> As
     process = await _started(place, theirs, room)
     theirs.close()
     reader, writer = await asyncio.open_connection(sock=ours, limit=MOST_BYTES)
-    excess = _Excess()
-    watching = asyncio.ensure_future(excess.watch(process, place, request))
+    excess = ""
+
+    async def watch() -> None:
+        """End it when it, or what it has started, takes too much of anything."""
+        nonlocal excess
+        deadline_s = time.monotonic() + request.within_s + GRACE_S
+        places = Places(place, Path(request.lesson).name).writable
+        while process.returncode is None and not excess:
+            await asyncio.sleep(LOOK_EVERY_S)
+            excess = (await asyncio.to_thread(Taken, process.pid, places)).excess()
+            if time.monotonic() > deadline_s:
+                excess = say("it took longer than {n:g} s", n=request.within_s)
+        if excess:
+            await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
+
+    watching = asyncio.ensure_future(watch())
     end: dict[str, Any] = {"event": "end", "taken": False}
     reason: str = say("the judge was ended before it was done; killed by what it judged, perhaps")
     try:
@@ -122,7 +136,7 @@ async def examined(place: Path, request: ExamRequest, room: Sequence[str]) -> As
         watching.cancel()
         writer.close()
         await asyncio.shield(asyncio.ensure_future(_end(process, place)))
-    yield {**end, "reason": excess.words or reason}
+    yield {**end, "reason": excess or reason}
 
 
 async def _started(place: Path, channel: socket.socket, room: Sequence[str]) -> asyncio.subprocess.Process:
@@ -145,26 +159,6 @@ async def _heard(reader: asyncio.StreamReader) -> AsyncIterator[dict[str, Any]]:
     with contextlib.suppress(OSError, ValueError):
         while line := await reader.readline():
             yield read_json(line)
-
-
-class _Excess:
-    """What an examiner or what it has started takes too much of."""
-
-    words = ""
-
-    async def watch(self, process: asyncio.subprocess.Process, place: Path, request: ExamRequest) -> None:
-        """End it when it does."""
-        deadline_s = time.monotonic() + request.within_s + GRACE_S
-        places = Places(place, Path(request.lesson).name).writable
-        while process.returncode is None:
-            await asyncio.sleep(LOOK_EVERY_S)
-            words = (await asyncio.to_thread(Taken, process.pid, places)).excess()
-            if time.monotonic() > deadline_s:
-                words = say("it took longer than {n:g} s", n=request.within_s)
-            if words:
-                self.words = words
-                await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
-                return
 
 
 async def _end(process: asyncio.subprocess.Process, place: Path) -> None:

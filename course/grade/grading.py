@@ -18,7 +18,7 @@ from course.folder.folder import in_language
 from course.grade.examination import ExamRequest, examined, own_places
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.limits import remove_tree
-from course.grade.submission import Files, Submission, check_gradable, files_of
+from course.grade.submission import Files, Submission, check_gradable, files_of, read_files, write_files
 from course.grade.walls import cell, room
 from course.lessons.lesson import LessonFolder
 from course.proof.trial import Places, unused_domains
@@ -72,7 +72,7 @@ async def grade_all(
     for domain in domains or unused_domains(64):
         free.put_nowait(domain)
     check_gradable(terms.lesson)
-    starter = await asyncio.to_thread(Files.read, terms.lesson.starter)
+    starter = await asyncio.to_thread(read_files, terms.lesson.starter)
     read = [await asyncio.to_thread(_read, one.folder) for one in chosen]
     space = asyncio.Semaphore(jobs)
     # What comes with the lesson is for every learner to see, and may be run by it.
@@ -83,7 +83,7 @@ async def grade_all(
     async def one(number: int) -> tuple[int, Grade]:
         submission, files = chosen[number], read[number]
         async with space:
-            if not isinstance(files, Files):
+            if not isinstance(files, dict):
                 return number, _not_graded(terms, submission, files)
             return number, await _Grading(terms, submission, starter, files, free, on_step, apart).grade()
 
@@ -104,7 +104,7 @@ def seed_of(files: Files) -> int:
     has made another one, for which others are drawn.
     """
     found = hashlib.sha256()
-    for path, content in sorted(files.contents.items()):
+    for path, content in sorted(files.items()):
         found.update(f"{path} {len(content)} ".encode(errors="surrogateescape"))
         found.update(content)
     return int.from_bytes(found.digest()[:8], "big") % LARGEST_SEED + 1
@@ -112,7 +112,7 @@ def seed_of(files: Files) -> int:
 
 def _read(folder: Path) -> Files | str:
     try:
-        return Files.read(folder)
+        return read_files(folder)
     except UsageError as error:
         return reason_of(error)
 
@@ -139,7 +139,7 @@ class _Grading:
 
     def __post_init__(self) -> None:
         self._names = files_of(self.terms.lesson)
-        self._missing = [name for name in self._names if Path(name) not in self.files.contents]
+        self._missing = [name for name in self._names if Path(name) not in self.files]
         self._seed = self.terms.seed or seed_of(self.files)
         self._grade = replace(_not_graded(self.terms, self.submission, ""), steps=(), notes=self._remarks())
 
@@ -149,8 +149,8 @@ class _Grading:
         if self._missing:
             names = ", ".join(self._missing)
             notes.append(say("not in the folder: {files}; the lesson's own beginning of it was judged", files=names))
-        own = self.files.contents.get(Path(FOLDERS_OWN))
-        given = self.starter.contents[Path(FOLDERS_OWN)]
+        own = self.files.get(Path(FOLDERS_OWN))
+        given = self.starter[Path(FOLDERS_OWN)]
         if own not in (None, given, *(in_language(given, code) for code in LANGUAGES)):
             notes.append(say("the folder's {file} was not used, but the lesson's own", file=FOLDERS_OWN))
         return tuple(notes)
@@ -198,8 +198,8 @@ class _Grading:
         places.make()
         for own in own_places(place).values():
             own.mkdir(parents=True)
-        self.starter.write(places.files)
-        self.files.write(places.files, without=FOLDERS_OWN)
+        write_files(self.starter, places.files)
+        write_files(self.files, places.files, without=FOLDERS_OWN)
         return ExamRequest(
             lesson=str(terms.lesson.path),
             place=str(place),

@@ -9,14 +9,16 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple, TypeAlias
 
 from course.lessons.lesson import IGNORED, LessonFolder
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
 
+Files: TypeAlias = dict[Path, bytes]
+"""The files of a folder, in memory, by path within it."""
 MOST_FILES = 2000
 MOST_BYTES = 64_000_000
 """Most of what is read of a folder, in all."""
@@ -24,43 +26,31 @@ NOT_READ = {*IGNORED, "node_modules", "venv"}
 """Folders that are never a learner's own work; those that begin with a dot are not read either."""
 
 
-@dataclass(frozen=True)
-class Files:
-    """The files of a folder, in memory."""
+def read_files(folder: Path) -> Files:
+    """Read a folder. Raises UsageError."""
+    contents: Files = {}
+    size = 0
+    try:
+        for path in _files(folder):
+            data = _content(path, MOST_BYTES - size)
+            size += len(data)
+            if len(contents) == MOST_FILES or size > MOST_BYTES:
+                words = say("{folder} holds more than {n} files or {mb} MB: is it the right one?", folder=str(folder),
+                            n=MOST_FILES, mb=MOST_BYTES // 1_000_000)  # fmt: skip
+                raise UsageError(words)
+            contents[path.relative_to(folder)] = data
+    except OSError as error:
+        at, why = str(error.filename or folder), error.strerror or str(error)
+        raise UsageError(say("{path} cannot be read: {why}", path=at, why=why)) from error
+    return contents
 
-    folder: Path
-    contents: dict[Path, bytes] = field(default_factory=dict)
-    """By path within the folder."""
 
-    @classmethod
-    def read(cls, folder: Path) -> Files:
-        """Read a folder. Raises UsageError."""
-        contents: dict[Path, bytes] = {}
-        size = 0
-        try:
-            for path in _files(folder):
-                data = _content(path, MOST_BYTES - size)
-                size += len(data)
-                if len(contents) == MOST_FILES or size > MOST_BYTES:
-                    words = say(
-                        "{folder} holds more than {n} files or {mb} MB: is it the right one?",
-                        folder=str(folder),
-                        n=MOST_FILES,
-                        mb=MOST_BYTES // 1_000_000,
-                    )
-                    raise UsageError(words)
-                contents[path.relative_to(folder)] = data
-        except OSError as error:
-            at, why = str(error.filename or folder), error.strerror or str(error)
-            raise UsageError(say("{path} cannot be read: {why}", path=at, why=why)) from error
-        return cls(folder, contents)
-
-    def write(self, folder: Path, *, without: str = "") -> None:
-        """Write them into another folder, over what is there."""
-        for name, data in self.contents.items():
-            if str(name) != without:
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                (folder / name).write_bytes(data)
+def write_files(files: Files, folder: Path, *, without: str = "") -> None:
+    """Write them into another folder, over what is there."""
+    for name, data in files.items():
+        if str(name) != without:
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(data)
 
 
 def _files(folder: Path) -> Iterator[Path]:
@@ -84,8 +74,7 @@ def _content(path: Path, most: int) -> bytes:
         return file.read(most + 1)
 
 
-@dataclass(frozen=True)
-class Submission:
+class Submission(NamedTuple):
     """One learner's folder."""
 
     student: str

@@ -46,9 +46,7 @@ _SETTLED = (NodeState.READY, NodeState.RUNNING, NodeState.FAILED, NodeState.EXIT
 class Judge:
     """Judges a lesson; made and closed by `judging`."""
 
-    def __init__(self, lesson: LessonFolder, evidence: Evidence, seed: int) -> None:
-        self.lesson = lesson
-        self.seed = seed
+    def __init__(self, lesson: LessonFolder, evidence: Evidence) -> None:
         self.evidence = evidence
         self.steps = {step.id: step for step in lesson.steps}
         self.over = asyncio.create_task(evidence.listen())
@@ -308,7 +306,7 @@ async def judging(
             loop.call_soon_threadsafe(evidence.take, update)
 
     observer.start(take)
-    judge = Judge(lesson, evidence, seed)
+    judge = Judge(lesson, evidence)
     judge.follow(())
     try:
         yield judge

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import shutil
 import tempfile
 from collections.abc import AsyncIterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from course.lessons.lesson import WRONG, LessonFolder, Mistake
-from course.proof.trial import Places, layered, trial
+from course.lessons.lesson import IGNORED, WRONG, LessonFolder, Mistake
+from course.proof.trial import Places, trial
 from course.results import State, StepResult
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import new_seed
@@ -139,7 +140,8 @@ async def _proven(variant: Variant, domain: int, seed: int) -> ProofVerdict:
     with tempfile.TemporaryDirectory(prefix="deck-lesson-", ignore_cleanup_errors=True) as place:
         places = Places(Path(place), variant.lesson.name)
         places.make()
-        layered(places.files, variant.layers)
+        for layer in filter(Path.is_dir, variant.layers):
+            shutil.copytree(layer, places.files, dirs_exist_ok=True, ignore=shutil.ignore_patterns(*IGNORED))
         try:
             if variant.mistake is not None:
                 variant.mistake.make(places.files)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import random
-import shutil
-from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from course.judge.judge import Judge, judging
-from course.lessons.lesson import IGNORED, LessonFolder
+from course.lessons.lesson import LessonFolder
 from launcher.client.client import launch
 from launcher.client.start import StartingSupervisor
 from launcher.domain.domain import LAST_SAFE_DOMAIN, default_domain
@@ -26,14 +25,6 @@ from text.sentences import say
 
 PARTING_S = 12.0
 """How long the nodes may take to end when all has been judged."""
-
-
-def layered(folder: Path, layers: Iterable[Path]) -> Path:
-    """Copy folders into one, a later one over an earlier one; return it."""
-    for layer in layers:
-        if layer.is_dir():
-            shutil.copytree(layer, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns(*IGNORED))
-    return folder
 
 
 @dataclass(frozen=True)

@@ -63,10 +63,10 @@ class Process:
 
 
 def read_process(pid: int) -> Process | None:
-    """Return the process with this number, None if there is none."""
+    """Return the process with this number, None if there is none, or none that this user may see (hidepid=1)."""
     try:
         stat = _read(pid, "stat")
-    except (FileNotFoundError, ProcessLookupError):
+    except (FileNotFoundError, ProcessLookupError, PermissionError):
         return None
     name = stat[stat.index(b"(") + 1 : stat.rindex(b")")]
     fields = stat_fields(stat)

@@ -82,7 +82,7 @@ async def test_nodes_are_judged_once_the_middleware_knows_them(
     monkeypatch.setattr("course.judge.judge.NAMED_WITHIN_S", 0.0)
     evidence = Evidence(cast("Any", None), cast("Any", _ToldLate()), Path(), {})
     evidence.take(_graph(os.getpid(), *early))
-    judge = Judge(cast("Any", SimpleNamespace(steps=())), evidence, seed=1)
+    judge = Judge(cast("Any", SimpleNamespace(steps=())), evidence)
 
     settling = asyncio.ensure_future(judge.settle())
     await evidence.let_pass(TICK_S)

@@ -18,7 +18,7 @@ from course.grade import limits, submission
 from course.grade.grades import FORMATS, Grade, writer_of
 from course.grade.grading import Terms, grade_all
 from course.grade.limits import Taken, descendants, remove_tree
-from course.grade.submission import Files, submissions
+from course.grade.submission import read_files, submissions, write_files
 from course.results import State
 from launcher.errors import UsageError
 from tests.unit.course.grade.made import HOSTILE, LESSON, grade
@@ -140,20 +140,20 @@ def test_links_pipes_and_what_is_not_the_learners_are_not_read(tmp_path: Path) -
     folder(place / "__pycache__", cached="")
     folder(place / ".git", history="")
     folder(place / "parts", part="2")
-    files = Files.read(place)
-    assert files.contents == {Path("mine.py"): b"1", Path("parts/part.py"): b"2"}
-    files.write(tmp_path / "copy")
+    files = read_files(place)
+    assert files == {Path("mine.py"): b"1", Path("parts/part.py"): b"2"}
+    write_files(files, tmp_path / "copy")
     assert (tmp_path / "copy/parts/part.py").read_text() == "2"
 
 
 def test_a_gigabyte_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(submission, "MOST_BYTES", 1000)
     place = folder(tmp_path / "anna", mine="x" * 400)
-    Files.read(place)
+    read_files(place)
     with (place / "huge").open("wb") as file:
         file.truncate(10**12)
     with pytest.raises(UsageError, match="right one"):
-        Files.read(place)
+        read_files(place)
 
 
 DEEP = """

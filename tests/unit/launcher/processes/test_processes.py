@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from launcher.processes import table
 from launcher.processes.exit import UNSEEN, Reaper
 from launcher.processes.table import read_process
 from tests.own_numbers import run_with_own_numbers
@@ -183,3 +185,18 @@ async def test_a_process_is_alive_while_one_of_its_threads_is() -> None:
 
     await until(ended, "the end of all of it")
     process.communicate()
+
+
+def test_what_proc_hides_is_not_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where /proc is mounted with hidepid=1: it names the processes of others, and lets nobody look at them."""
+    read = table._read
+
+    def hidden(pid: int, file_name: str) -> bytes:
+        if pid == 1:
+            raise PermissionError(errno.EPERM, "hidden")
+        return read(pid, file_name)
+
+    monkeypatch.setattr(table, "_read", hidden)
+    seen = [process.pid for process in table.processes()]
+    assert os.getpid() in seen
+    assert 1 not in seen
