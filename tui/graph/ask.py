@@ -140,8 +140,8 @@ class AskPane(GraphPane):
             rows = [link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in types]
             rows += node_links(servers, "serves", _("serves it"))
             rows += node_links(clients, "calls", _(self.calls_it))
-        self.query_one(NameHead).show(self.name_shown, *told)
-        self.query_one(GraphLinks).show_links(rows)
+        self.head.show(self.name_shown, *told)
+        self.links.show_links(rows)
         columns, asked = self.asked()
         self.asked_rows.display = bool(asked)
         self.asked_rows.show(columns, asked)
