@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.joints import HEAD_PAN, HEAD_TILT
@@ -192,6 +191,7 @@ class Dial(NamedTuple):
 class HeadPanel(Panel):
     """Pan and tilt, from above and from the side."""
 
+    view = HeadView
     title = N_("Head")
     least = 3
     weight = 4
@@ -199,9 +199,6 @@ class HeadPanel(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._joints = Joints(HEAD_STATE, (HEAD_PAN, HEAD_TILT))
-
-    def compose(self) -> ComposeResult:
-        yield HeadView()
 
     def watched(self) -> set[str]:
         return {HEAD_STATE}
