@@ -4,7 +4,8 @@
 PROFILE ?=
 ARGS ?=
 PYTHON ?=
-export PYTHON
+ROS ?=
+export PYTHON ROS
 
 # A sourced ROS, or a Deck that this make runs under, would put its libraries
 # before those of .venv.
@@ -16,13 +17,13 @@ endif
 # Keep compiled modules: the tests start nodes by the hundred.
 unexport PYTHONDONTWRITEBYTECODE
 
-ifneq ($(shell PYTHON='$(PYTHON)' sh scripts/sound.sh && echo yes),yes)
+ifneq ($(shell PYTHON='$(PYTHON)' ROS='$(ROS)' sh scripts/sound.sh && echo yes),yes)
 .PHONY: .venv/.ready
 endif
 
 ROOMS := agents bench brain bridges cli course deck graph launcher nodes robot ros2 scripts space tests text tui view
 
-.PHONY: help setup run view test test-all lint lock architecture clean
+.PHONY: help setup run view test test-all lint lock architecture site clean
 .DEFAULT_GOAL := help
 
 help:
@@ -31,9 +32,10 @@ help:
 	@echo 'make test   set up if needed, then run the tests; ARGS="-k sonar"'
 	@echo 'make test-all  also the slow tests and those that need more of the machine, such as a browser'
 	@echo 'make lint   style, types and who may import whom'
-	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python'
+	@echo 'make setup  only set up; PYTHON=python3.12 chooses the Python, ROS=kilted the ROS in place of jazzy'
 	@echo 'make lock   ask for newer libraries and write down which, with their hashes'
-	@echo 'make architecture  redraw the picture in ARCHITECTURE.md from the code'
+	@echo 'make architecture  write the list of rooms in ARCHITECTURE.md from the code'
+	@echo 'make site   write the documentation as web pages to build/site'
 	@echo 'make clean  remove what the others made'
 
 setup: catalogues
@@ -80,11 +82,20 @@ lock: .venv/.ready
 architecture: .venv/.ready
 	@.venv/bin/python scripts/architecture.py --write
 
+# What only those need who build the site.
+.venv/.docs: .venv/.ready $(wildcard locked/docs.txt)
+	@.venv/bin/python -m pip --disable-pip-version-check install --quiet --no-compile --no-deps --require-hashes \
+	--requirement locked/docs.txt
+	@touch $@
+
+site: catalogues .venv/.docs
+	@exec .venv/bin/mkdocs build --strict --quiet
+
 # A folder without the mark of scripts/environment.py belongs to the user.
 clean:
 	@if [ ! -e .venv ] || [ -e .venv/.ready ] || [ -e .venv/.unfinished ]; then rm -rf .venv; \
 	else echo '.venv is not of this make'"'"'s making: it stays'; fi
-	rm -rf build/setup .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf build/setup build/site .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	@if [ -d build ]; then rmdir --ignore-fail-on-non-empty build; fi
 	@for room in $(ROOMS); do \
 	if [ -d $$room ]; then find $$room -path '*/__pycache__/*.pyc' -type f -delete; \

@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from bench.processes import stolen_s
+import psutil
 
 RESULTS = Path(__file__).with_name("RESULTS.md")
 MEASUREMENTS = {
@@ -25,49 +25,34 @@ MEASUREMENTS = {
     "stop": "From a near sonar frame, and from the space bar, to the stop at the Pico",
 }
 """Module to the title of its section."""
+HEAD = (
+    f"# What Deck costs\n\nWritten by `python -m bench` on a machine with {os.cpu_count()} cores, Python"
+    f" {platform.python_version()}, {platform.system()}, on mocks; nothing here was measured on a Raspberry Pi or"
+    " with real hardware.\n"
+)
 
 
 def main() -> int:
-    """Measure, print, and write; return 1 if a measurement failed, 2 for an unknown name."""
+    """Measure, and write; return 1 if a measurement failed, 2 for an unknown name."""
     wanted = sys.argv[1:] or list(MEASUREMENTS)
     if unknown := set(wanted) - set(MEASUREMENTS):
         print(f"no such measurement: {', '.join(unknown)}", file=sys.stderr)
         return 2
-    sections = known_sections()
+    before = RESULTS.read_text().split("\n## ")[1:] if RESULTS.exists() else []
+    known = {title: text for title, _, text in (section.partition("\n\n") for section in before)}
+    sections = {title: known.get(title, "not measured yet\n") for title in MEASUREMENTS.values()}
     broken = False
     for module in wanted:
-        title = MEASUREMENTS[module]
-        print(f"{module}: {title} ...", file=sys.stderr, flush=True)
-        stolen, started = stolen_s(), time.monotonic()
-        argv = [sys.executable, "-m", f"bench.{module}"]
-        ended = subprocess.run(argv, stdout=subprocess.PIPE, text=True, check=False)
-        if ended.returncode:
-            broken = True
-            continue
-        share = 100 * (stolen_s() - stolen) / (time.monotonic() - started)
-        told = f"`python -m bench.{module}`; the host kept {share:.1f} % of a core to itself"
-        sections[title] = f"{told}\n\n{ended.stdout.strip()}\n"
-    RESULTS.write_text(head() + "".join(f"\n## {t}\n\n{sections[t]}" for t in sections))
+        print(f"{module} ...", file=sys.stderr, flush=True)
+        stolen, began_s = psutil.cpu_times().steal, time.monotonic()
+        ended = subprocess.run([sys.executable, "-m", f"bench.{module}"], stdout=-1, text=True, check=False)
+        broken |= ended.returncode != 0
+        if not ended.returncode:
+            share = 100 * (psutil.cpu_times().steal - stolen) / (time.monotonic() - began_s)
+            told = f"`python -m bench.{module}`; the host kept {share:.1f} % of a core to itself"
+            sections[MEASUREMENTS[module]] = f"{told}\n\n{ended.stdout.strip()}\n"
+    RESULTS.write_text(HEAD + "".join(f"\n## {title}\n\n{text}" for title, text in sections.items()))
     return int(broken)
-
-
-def head() -> str:
-    """Return the head of the page: what was measured, and what was not."""
-    machine = f"{os.cpu_count()} cores, Python {platform.python_version()}, {platform.system()}"
-    return (
-        f"# What Deck costs\n\nWritten by `python -m bench` on a machine with {machine}, on mocks; "
-        "nothing here was measured on a Raspberry Pi or with real hardware.\n"
-    )
-
-
-def known_sections() -> dict[str, str]:
-    """Return title to text of the previous results, in the order of `MEASUREMENTS`."""
-    known = {}
-    if RESULTS.exists():
-        for section in RESULTS.read_text().split("\n## ")[1:]:
-            title, _, text = section.partition("\n\n")
-            known[title] = text
-    return {title: known.get(title, "not measured yet\n") for title in MEASUREMENTS.values()}
 
 
 if __name__ == "__main__":

@@ -1,89 +1,83 @@
-"""CPU and memory of processes, and CPU of the machine, read from /proc; programs for a measurement."""
+"""What is measured, started: programs in a ROS domain, Deck in a terminal; and what processes take."""
 
 from __future__ import annotations
 
+import json
 import os
-import re
 import subprocess
 import sys
-import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import psutil
+
 from launcher.domain.discovery import set_discovery
-from launcher.processes.table import processes
+from tests.e2e.terminal import Terminal, own_folders
 
 ROOT = Path(__file__).resolve().parents[1]
-TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+OF_THE_SCREEN = ("observer.process", "launcher.supervisor")
 
 
-def cpu_s(pids: Iterable[int]) -> float:
-    """Return the CPU time that the processes have used so far, user and system, in seconds."""
-    ticks = 0
-    for pid in pids:
-        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-        ticks += int(fields[11]) + int(fields[12])
-    return ticks / TICKS_PER_S
-
-
-def pss_mb(pids: Iterable[int]) -> float:
-    """Return the total proportional set size of the processes, in megabytes (10^6 bytes)."""
-    return sum(_pss_bytes(pid) for pid in pids) / 1e6
-
-
-def stolen_s() -> float:
-    """Return the CPU time that the host has withheld from this virtual machine, in seconds."""
-    fields = Path("/proc/stat").read_text().split(maxsplit=10)
-    return int(fields[8]) / TICKS_PER_S
-
-
-def descendants(pid: int) -> list[int]:
+def family(pid: int) -> list[psutil.Process]:
     """Return a process and all its descendants."""
-    table = list(processes())
-    found = [pid]
-    for parent in found:
-        found += [process.pid for process in table if process.parent == parent]
-    return found
+    process = psutil.Process(pid)
+    return [process, *process.children(recursive=True)]
 
 
-def command(pid: int) -> str:
-    """Return the command line of a process, with blanks between the arguments."""
-    return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode().strip()
+def of_the_screen(terminal: Terminal) -> list[psutil.Process]:
+    """Return the screen, its observer, guardian and supervisor, without server and nodes."""
+    screen, *others = family(terminal.process.pid)
+    return [screen, *(one for one in others if any(mark in " ".join(one.cmdline()) for mark in OF_THE_SCREEN))]
 
 
-def _pss_bytes(pid: int) -> int:
-    try:
-        text = Path(f"/proc/{pid}/smaps_rollup").read_text()
-    except (FileNotFoundError, ProcessLookupError):
-        return 0  # it has just ended
-    match = re.search(r"^Pss:\s+(\d+) kB", text, re.MULTILINE)
-    return int(match[1]) * 1024 if match else 0
+def cpu_s(processes: Iterable[psutil.Process]) -> float:
+    """Return the CPU time that the processes have used so far, user and system, in seconds."""
+    return sum(sum(process.cpu_times()[:2]) for process in processes)
+
+
+def pss_mb(processes: Iterable[psutil.Process]) -> float:
+    """Return the total proportional set size of the processes, in megabytes (10^6 bytes)."""
+    return sum(process.memory_full_info().pss for process in processes) / 1e6
+
+
+def environment(domain: int) -> dict[str, str]:
+    env = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+    set_discovery(env, "localhost")
+    return env
 
 
 @contextmanager
-def running(*argv: str, domain: int) -> Iterator[None]:
+def running(*argv: str, domain: int) -> Iterator[subprocess.Popen[bytes]]:
     """Run a Python program in a domain, and end it by SIGTERM."""
-    env = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
-    set_discovery(env, "localhost")
-    nowhere = subprocess.DEVNULL
-    process = subprocess.Popen(
-        [sys.executable, *argv], cwd=ROOT, env=env, stdin=nowhere, stdout=nowhere, stderr=nowhere
-    )
+    command, env, quiet = (sys.executable, *argv), environment(domain), subprocess.DEVNULL
+    with subprocess.Popen(command, cwd=ROOT, env=env, stdin=quiet, stdout=quiet, stderr=quiet) as process:
+        try:
+            yield process
+        finally:
+            process.terminate()
+
+
+@contextmanager
+def deck(
+    folder: Path, *args: str, domain: int, size: tuple[int, int] = (120, 40), lesson: str = "", **env: str
+) -> Iterator[Terminal]:
+    """Run the program in a terminal with its own directories; `lesson`: the one that was open last."""
+    settings = folder / "config" / "deck" / "settings.json"
+    settings.parent.mkdir(parents=True, exist_ok=True)
+    settings.write_text(json.dumps({"tour": "seen", "lesson": lesson}))
+    argv = [sys.executable, "-m", "tui", *args, "--domain", str(domain), "--lang", "en"]
+    # Over SSH, pictures would be limited.
+    own = own_folders(folder, DECK_COURSE=str(folder / "course"), **{"SSH_CONNECTION": "", **env})
+    terminal = Terminal(argv, *size, own)
     try:
-        yield
+        yield terminal
     finally:
-        process.terminate()
-        process.wait(30)
+        terminal.close()
 
 
-def stdin_closed() -> threading.Event:
-    """Return an event that is set once stdin is closed, by the end of whoever has started this."""
-    ended = threading.Event()
-
-    def read() -> None:
-        sys.stdin.read()
-        ended.set()
-
-    threading.Thread(target=read, daemon=True).start()
-    return ended
+def table(*rows: Iterable[object]) -> None:
+    """Print a table, its head first."""
+    head, *others = rows
+    for row in (head, ["---" for _ in head], *others):
+        print("|", " | ".join(map(str, row)), "|")

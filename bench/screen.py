@@ -5,111 +5,93 @@
 
 from __future__ import annotations
 
-import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING
 
-from bench.processes import command, cpu_s, descendants, pss_mb
-from tests.e2e.terminal import Terminal, own_folders
+from bench.processes import cpu_s, of_the_screen, pss_mb, table
+from bench.processes import deck as deck_in
 
-DOMAIN = int(os.environ.get("BENCH_DOMAIN", "77"))
-ROUNDS = 7
+if TYPE_CHECKING:
+    import psutil
+
+    from tests.e2e.terminal import Terminal
+
+deck = partial(deck_in, domain=int(os.environ.get("BENCH_DOMAIN", "77")))
+ROUNDS, PRESSES = 7, 30
 TITLE = "One screen instead of five terminals"
 FRAME_BYTES = 2000
 """More bytes than switching the terminal takes, fewer than any frame."""
-REST_S = 30.0
-PRESSES = 30
-FLOOD_S = 30.0
+REST_S = FLOOD_S = 30.0
 FILLING_S = 25.0
 """Long enough to fill the bounded buffers."""
-
 FLOOD = """
 import sys, time
 start, sent = time.monotonic(), 0
 while True:
     due = int((time.monotonic() - start) * 10_000)
-    sys.stdout.write("".join(f"flood line {n}, as long as log lines are wont to be\\n"
-                             for n in range(sent, due)))
+    sys.stdout.write("".join(f"flood line {n}, as long as log lines are wont to be\\n" for n in range(sent, due)))
     sys.stdout.flush()
     sent = due
     time.sleep(0.01)
 """
 COUNT = """
-import time
-n = 0
-while True:
-    n += 1
+import itertools, time
+for n in itertools.count(1):
     print(f"count {n}", flush=True)
     time.sleep(0.02)
 """
-
-
-@contextmanager
-def deck(folder: Path, *args: str) -> Iterator[Terminal]:
-    """Run the program in a terminal of 120x40 with its own directories."""
-    env = own_folders(folder, DECK_COURSE=str(folder / "course"))
-    settings = folder / "config" / "deck" / "settings.json"
-    settings.parent.mkdir(parents=True, exist_ok=True)
-    settings.write_text(json.dumps({"tour": "seen"}))
-    argv = [sys.executable, "-m", "tui", *args, "--domain", str(DOMAIN), "--lang", "en"]
-    terminal = Terminal(argv, 120, 40, env)
-    try:
-        yield terminal
-    finally:
-        terminal.close()
+PROFILE = """
+title: {en: A flood of lines}
+nodes:
+  flood: {exec: [python3, ./flood.py]}
+  count: {exec: [python3, ./count.py]}
+"""
 
 
 def first_frame(folder: Path) -> tuple[float, float, float]:
     """Return median s until the first frame, until the lessons, and for `import textual.app`."""
-    frames, lists, imports = [], [], []
+    taken = []
     for _ in range(ROUNDS):
-        started = time.monotonic()
+        began_s = time.monotonic()
         subprocess.run([sys.executable, "-c", "import textual.app"], check=True)
-        imports.append(time.monotonic() - started)
-        started = time.monotonic()
+        imported_s = time.monotonic()
         with deck(folder) as terminal:
             # Reading the screen would take CPU from the program that draws it.
             while terminal.received < FRAME_BYTES:
                 time.sleep(0.001)
-            frames.append(time.monotonic() - started)
+            frame_s = time.monotonic()
             terminal.wait_for(TITLE)
-            lists.append(time.monotonic() - started)
-    return statistics.median(frames), statistics.median(lists), statistics.median(imports)
+            taken.append((frame_s - imported_s, time.monotonic() - imported_s, imported_s - began_s))
+    frame, listed, imported = (median(column) for column in zip(*taken, strict=True))
+    return frame, listed, imported
 
 
-def screen_processes(terminal: Terminal) -> list[int]:
-    """Return the pids of the screen, its observer, guardian and supervisor, without server and nodes."""
-    marks = ("observer.process", "launcher.supervisor")
-    screen, *others = descendants(terminal.process.pid)
-    return [screen, *(pid for pid in others if any(mark in command(pid) for mark in marks))]
-
-
-def at_rest(terminal: Terminal, pids: list[int]) -> tuple[float, float, float]:
+def at_rest(terminal: Terminal, processes: list[psutil.Process]) -> tuple[float, float, float]:
     """Return CPU in percent of a core, PSS in MB, and bytes per second to the terminal."""
-    cpu, sent, started = cpu_s(pids), terminal.received, time.monotonic()
+    cpu, sent, began_s = cpu_s(processes), terminal.received, time.monotonic()
     time.sleep(REST_S)
-    passed = time.monotonic() - started
-    return (100 * (cpu_s(pids) - cpu) / passed, pss_mb(pids), (terminal.received - sent) / passed)
+    passed_s = time.monotonic() - began_s
+    return 100 * (cpu_s(processes) - cpu) / passed_s, pss_mb(processes), (terminal.received - sent) / passed_s
 
 
 def key_delays_ms(terminal: Terminal, presses: int = PRESSES) -> list[float]:
     """Return the times from pressing an arrow key to the selection of the next row, told by its name."""
     delays = []
     for press in range(presses):
-        before, started_s = marked(terminal), time.monotonic()
+        before, began_s = marked(terminal), time.monotonic()
         terminal.press("up" if press % 2 else "down")
         while marked(terminal) in (before, ""):
-            if time.monotonic() - started_s > 10:
+            if time.monotonic() - began_s > 10:
                 raise RuntimeError(f"no answer to a key:\n{terminal.text()}")
             time.sleep(0.001)
-        delays.append(1000 * (time.monotonic() - started_s))
+        delays.append(1000 * (time.monotonic() - began_s))
         # No multiple of the quarter of a second in which the graph is redrawn.
         time.sleep(0.23)
     return delays
@@ -126,30 +108,17 @@ def flooded(folder: Path) -> tuple[list[float], float, int, int]:
 
     The lines are those of a second node, which writes 50 lines/s beside a flood of 10 000 lines/s.
     """
-    profile = folder / "flood.yaml"
-    (folder / "flood.py").write_text(FLOOD)
-    (folder / "count.py").write_text(COUNT)
-    profile.write_text(
-        "title: {en: A flood of lines}\n"
-        "nodes:\n"
-        f"  flood: {{exec: [{sys.executable!r}, {str(folder / 'flood.py')!r}]}}\n"
-        f"  count: {{exec: [{sys.executable!r}, {str(folder / 'count.py')!r}]}}\n"
-    )
-    with deck(folder, str(profile)) as terminal:
+    for name, text in (("flood.py", FLOOD), ("count.py", COUNT), ("flood.yaml", PROFILE)):
+        (folder / name).write_text(text)
+    with deck(folder, str(folder / "flood.yaml")) as terminal:
         terminal.wait_for("2/2")
         time.sleep(FILLING_S)
-        before = pss_mb(screen_processes(terminal))
-        until = time.monotonic() + FLOOD_S
-        delays = []
-        while time.monotonic() < until:
+        before, until_s, delays = pss_mb(of_the_screen(terminal)), time.monotonic() + FLOOD_S, []
+        while time.monotonic() < until_s:
             delays += key_delays_ms(terminal)
-        growth = pss_mb(screen_processes(terminal)) - before
-    counted = [
-        int(line.split("count ")[1])
-        for log in sorted((folder / "logs").rglob("count*.log*"))
-        for line in log.read_text().splitlines()
-        if "count " in line and line.split("count ")[1].isdigit()
-    ]
+        growth = pss_mb(of_the_screen(terminal)) - before
+    lines = (line for log in (folder / "logs").rglob("count*.log*") for line in log.read_text().splitlines())
+    counted = [int(number) for line in lines if (number := line.partition("count ")[2]).isdigit()]
     return delays, growth, max(counted), len(set(counted))
 
 
@@ -161,21 +130,22 @@ def main() -> None:
         with deck(folder, "09-brain") as terminal:
             terminal.wait_for("9/9")
             time.sleep(5)
-            cpu, pss, sent = at_rest(terminal, screen_processes(terminal))
+            cpu, pss, sent = at_rest(terminal, of_the_screen(terminal))
             keys = key_delays_ms(terminal)
         delays, growth, written, kept = flooded(folder)
-    print("| what | measured | goal |")
-    print("| --- | --- | --- |")
-    print(f"| first frame / `import textual.app` | {frame / imported:.2f} | 1.5 |")
-    print(f"| the list of lessons / `import textual.app` | {listed / imported:.2f} | - |")
-    print(f"| screen and supervisor at rest, CPU of one core | {cpu:.1f} % | 12 % |")
-    print(f"| screen and supervisor at rest, PSS | {pss:.0f} MB | 150 MB |")
-    print(f"| to the terminal at rest | {sent / 1000:.1f} kB/s | 8 kB/s |")
-    print(f"| a key to its effect, median | {statistics.median(keys):.0f} ms | 50 ms |")
-    print(f"| a key under 10 000 lines/s, median | {statistics.median(delays):.0f} ms | 200 ms |")
-    print(f"| a key under 10 000 lines/s, longest | {max(delays):.0f} ms | 500 ms |")
-    print(f"| memory grown in {FLOOD_S:.0f} s of flood, buffers full | {growth:+.1f} MB | flat |")
-    print(f"| lines of the other node lost in the flood | {written - kept} of {written} | 0 |")
+    table(
+        ("what", "measured", "goal"),
+        ("first frame / `import textual.app`", f"{frame / imported:.2f}", "1.5"),
+        ("the list of lessons / `import textual.app`", f"{listed / imported:.2f}", "-"),
+        ("screen and supervisor at rest, CPU of one core", f"{cpu:.1f} %", "12 %"),
+        ("screen and supervisor at rest, PSS", f"{pss:.0f} MB", "150 MB"),
+        ("to the terminal at rest", f"{sent / 1000:.1f} kB/s", "8 kB/s"),
+        ("a key to its effect, median", f"{median(keys):.0f} ms", "50 ms"),
+        ("a key under 10 000 lines/s, median", f"{median(delays):.0f} ms", "200 ms"),
+        ("a key under 10 000 lines/s, longest", f"{max(delays):.0f} ms", "500 ms"),
+        (f"memory grown in {FLOOD_S:.0f} s of flood, buffers full", f"{growth:+.1f} MB", "flat"),
+        ("lines of the other node lost in the flood", f"{written - kept} of {written}", "0"),
+    )
 
 
 if __name__ == "__main__":

@@ -8,47 +8,27 @@ from __future__ import annotations
 
 import os
 import re
-import statistics
 import sys
 import tempfile
 import time
 from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING
 
-from bench.processes import ROOT
+from bench.processes import ROOT, deck, table
 from tests.e2e.panning_camera import PROFILE, TOPIC
-from tests.e2e.terminal import Terminal, own_folders
 
-DOMAIN = os.environ.get("BENCH_DOMAIN", "79")
-COLUMNS, ROWS = 160, 45
-LINE = 64_000
+if TYPE_CHECKING:
+    from tests.e2e.terminal import Terminal
+
+DOMAIN = int(os.environ.get("BENCH_DOMAIN", "79"))
+SIZE = (160, 45)
 WARM_UP_S = 15.0
 """Long enough for the queue to the line to reach its maximum."""
 MEASURE_S = 10.0
 PRESSES = 15
 BETWEEN_KEYS_S = 1.3
-SSH = {"SSH_CONNECTION": "192.0.2.1 50000 192.0.2.2 22"}
-CASES: tuple[tuple[str, dict[str, str], int], ...] = (
-    ("any speed, no limit", {}, 0),
-    ("any speed, over SSH", SSH, 0),
-    ("64 kB/s, no limit", {}, LINE),
-    ("64 kB/s, over SSH", SSH, LINE),
-)
-
-
-def open_picture(folder: Path, env: dict[str, str]) -> Terminal:
-    """Return the program, with the camera's picture on the screen."""
-    profile = folder / "pan.yaml"
-    profile.write_text(PROFILE.format(python=sys.executable, root=ROOT, topic=TOPIC))
-    own = own_folders(folder, SSH_CONNECTION="")
-    argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
-    terminal = Terminal(argv, COLUMNS, ROWS, {**own, **env})
-    terminal.wait_for("1/1")
-    terminal.press("f3")
-    terminal.wait_for(TOPIC)
-    terminal.press("/")
-    terminal.type("image_raw\r")
-    terminal.wait_for("640×480")
-    return terminal
+SSH = "192.0.2.1 50000 192.0.2.2 22"
 
 
 def key_answers_s(terminal: Terminal) -> list[float]:
@@ -56,40 +36,47 @@ def key_answers_s(terminal: Terminal) -> list[float]:
     answers = []
     for _press in range(PRESSES):
         time.sleep(BETWEEN_KEYS_S)
-        pressed = time.monotonic()
+        pressed_s = time.monotonic()
         terminal.press("f1")
         terminal.wait_for("Keys of this screen", 60)
-        answers.append(time.monotonic() - pressed)
+        answers.append(time.monotonic() - pressed_s)
         terminal.press("escape")
         terminal.wait_for(TOPIC, 60)
     return answers
 
 
-def turn(env: dict[str, str], line: int) -> tuple[float, str, list[float]]:
-    """Return bytes/s to the terminal, pictures/s if some are left out, and key delays."""
+def turn(ssh: str, line: int) -> tuple[str, ...]:
+    """Return kB/s to the terminal, pictures/s if some are left out, and the median and the longest key delay."""
     with tempfile.TemporaryDirectory() as name:
-        terminal = open_picture(Path(name), env)
-        try:
+        profile = Path(name, "pan.yaml")
+        profile.write_text(PROFILE.format(python=sys.executable, root=ROOT, topic=TOPIC))
+        with deck(Path(name), str(profile), domain=DOMAIN, size=SIZE, SSH_CONNECTION=ssh) as terminal:
+            terminal.wait_for("1/1")
+            terminal.press("f3")
+            terminal.wait_for(TOPIC)
+            terminal.type("/image_raw\r")
+            terminal.wait_for("640×480")
             terminal.bytes_per_s = line
             time.sleep(WARM_UP_S)
-            before, begun = terminal.received, time.monotonic()
+            before, began_s = terminal.received, time.monotonic()
             time.sleep(MEASURE_S)
-            rate = (terminal.received - before) / (time.monotonic() - begun)
+            rate = (terminal.received - before) / (time.monotonic() - began_s)
             shown = re.search(r"640×480 · ([\d.]+) of [\d.]+ Hz", terminal.text())
-            return rate, shown[1] if shown else "as ever", key_answers_s(terminal)
-        finally:
-            terminal.close()
+            answers = key_answers_s(terminal)
+    pictures = shown[1] if shown else "as ever"
+    return f"{rate / 1000:.0f}", pictures, f"{median(answers):.2f}", f"{max(answers):.2f}"
 
 
 def main() -> None:
     """Measure all cases and print the results."""
-    print(f"640x480 at 15 Hz at {COLUMNS}x{ROWS}; {PRESSES} presses of F1 each")
-    print("| line to the terminal | kB/s | pictures a second | a key, median s | longest s |")
-    print("| --- | --- | --- | --- | --- |")
-    for name, env, line in CASES:
-        rate, shown, answers = turn(env, line)
-        median, longest = statistics.median(answers), max(answers)
-        print(f"| {name} | {rate / 1000:.0f} | {shown} | {median:.2f} | {longest:.2f} |")
+    print(f"640x480 at 15 Hz at {SIZE[0]}x{SIZE[1]}; {PRESSES} presses of F1 each\n")
+    cases = {(speed, way): turn(ssh, line)
+             for speed, line in (("any speed", 0), ("64 kB/s", 64_000))
+             for way, ssh in (("no limit", ""), ("over SSH", SSH))}  # fmt: skip
+    table(
+        ("line to the terminal", "kB/s", "pictures a second", "a key, median s", "longest s"),
+        *((", ".join(case), *figures) for case, figures in cases.items()),
+    )
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """The time from a sonar frame below the threshold, and from the space bar, to the stop at the Pico.
 
 `python -m bench.stop` prints a table. This process emulates the devices, on pseudo-terminals. For the reflex, the
-nodes of profiles/robot.yaml are between them, and all of lesson 9 runs as well; then a bare loop in one process with
-pyserial only replaces the nodes. For the key, the screen runs lesson 9 and the chassis.
+nodes of profiles/robot.yaml are between them, and all of lesson 9 runs as well. For the key, the screen runs lesson 9
+and the chassis.
 """
 
 from __future__ import annotations
@@ -10,25 +10,22 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import pty
 import random
-import select
 import statistics
 import sys
 import tempfile
 import threading
 import time
-import tty
 from contextlib import ExitStack, contextmanager
-from itertools import count
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.processes import ROOT, running
-from bench.screen import deck
+from bench.processes import ROOT, deck, running, table
 from launcher.profile.load import load_profile
-from robot.wire.pico import Drive, Halt, Hello, PicoDecoder, Release, encode
-from robot.wire.tfluna import Model, TofDecoder, TofFrame
+from nodes.simulated.devices import PseudoSerial
+from robot.wire.pico import Drive, Halt, PicoDecoder, Release
+from robot.wire.tfluna import TofFrame
 from robot.wire.tfluna import encode as encode_tof
 from robot.world.boards import SimulatedPico
 from robot.world.world import STEP_S, World
@@ -44,14 +41,14 @@ STOPS = int(os.environ.get("BENCH_ROUNDS", "200"))
 PRESSES = int(os.environ.get("BENCH_ROUNDS", "60"))
 PORTS = {"sonar_front": "tof_front", "sonar_rear": "tof_rear", "chassis": "pico"}
 CHAIN = (*PORTS, "safety_stop", "electronic_differential")
-FAR_M, NEAR_M, CRITICAL_M = 3.0, 0.3, 0.5
-LONGEST_S, AGAIN_S = 60.0, 1.0
+FAR_M, NEAR_M = 3.0, 0.3
+LONGEST_S, AGAIN_S, LOOK_S = 60.0, 1.0, 0.0005
 
 
 class Pico:
     """The simulated Pico on a serial line; records every line that it receives, with its time."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: PseudoSerial) -> None:
         self.heard: list[tuple[float, Message]] = []
         self._port = port
         self._pico = SimulatedPico(World())
@@ -70,23 +67,23 @@ class Pico:
         return at_s
 
     def live(self, ended: threading.Event) -> None:
-        """Read at once, and take a step of the simulation whenever one is due."""
+        """Read nearly at once, and take a step of the simulation whenever one is due."""
         due_s = time.monotonic()
         while not ended.is_set():
             due_s += STEP_S
-            while (left_s := due_s - time.monotonic()) > 0:
-                if select.select([self._port], [], [], left_s)[0]:
-                    data, now_s = os.read(self._port, 4096), time.monotonic()
-                    self.heard += [(now_s, line) for line in self._decoder.feed(data)]
-                    self._pico.feed(data)
-            send(self._port, self._pico.step())
+            while time.monotonic() < due_s:
+                data, now_s = self._port.read(), time.monotonic()
+                self.heard += [(now_s, line) for line in self._decoder.feed(data)]
+                self._pico.feed(data)
+                time.sleep(LOOK_S)
+            self._port.write(self._pico.step())
             self._pico.world.step()
 
 
 class Sonar:
     """A TF-Luna that measures `metres`, 100 times a second."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: PseudoSerial) -> None:
         self.metres = FAR_M
         self.told_s: dict[float, float] = {}
         """When each distance was first sent since this was cleared."""
@@ -96,37 +93,25 @@ class Sonar:
         while not ended.wait(0.01):
             metres = self.metres
             self.told_s.setdefault(metres, time.monotonic())
-            send(self._port, encode_tof(TofFrame(round(100 * metres), 1000, 25.0)))
-
-
-def send(port: int, data: bytes) -> None:
-    """Send to a line; what is not read for long is lost."""
-    with contextlib.suppress(BlockingIOError):
-        os.write(port, data)
+            self._port.write(encode_tof(TofFrame(round(100 * metres), 1000, 25.0)))
 
 
 @contextmanager
 def devices(folder: Path) -> Iterator[tuple[Pico, Sonar]]:
     """Emulate the Pico and both sonars, each on a thread and under its name in the folder."""
-    ended, made = threading.Event(), []
-    for name, device in (("pico", Pico), ("tof_front", Sonar), ("tof_rear", Sonar)):
-        ours, theirs = pty.openpty()
-        tty.setraw(theirs)
-        os.set_blocking(ours, False)
-        (folder / name).symlink_to(os.ttyname(theirs))
-        made.append(device(ours))
-    threads = [threading.Thread(target=device.live, args=(ended,)) for device in made]
+    ended = threading.Event()
+    ports = [PseudoSerial(folder / name) for name in ("pico", "tof_front", "tof_rear")]
+    pico, front, rear = Pico(ports[0]), Sonar(ports[1]), Sonar(ports[2])
+    threads = [threading.Thread(target=device.live, args=(ended,)) for device in (pico, front, rear)]
     for thread in threads:
         thread.start()
     try:
-        pico, front, _rear = made
-        assert isinstance(pico, Pico)
-        assert isinstance(front, Sonar)
         yield pico, front
     finally:
         ended.set()
-        for thread in threads:
+        for thread, port in zip(threads, ports, strict=True):
             thread.join()
+            port.unplug()
 
 
 def drives(line: Message) -> bool:
@@ -148,7 +133,7 @@ def nodes(folder: Path) -> Iterator[None]:
             own = dict(specs[name].params)
             if name in PORTS:
                 own["port"] = str(folder / PORTS[name])
-            stack.enter_context(running(*specs[name].model_copy(update={"params": own}).argv()[1:], domain=DOMAIN))
+            stack.enter_context(running(*replace(specs[name], params=own).argv()[1:], domain=DOMAIN))
         stack.enter_context(running("-m", "bench.stop", "command", domain=DOMAIN))
         yield
 
@@ -172,27 +157,6 @@ def command() -> None:
     node.create_timer(0.1, publish)
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(node)
-
-
-def bare(sonar_port: str, pico_port: str) -> None:
-    """Be the obvious first solution: one loop, no ROS, no reconnection, no other commands."""
-    import serial
-
-    sonar = serial.Serial(sonar_port, 115_200, timeout=0.02, exclusive=True)
-    pico = serial.Serial(pico_port, 115_200, timeout=0, exclusive=True)
-    decoder, numbers = TofDecoder(), count(1)
-    pico.write(encode(Hello(0)))
-    begun_s, due_s, speed = time.monotonic(), 0.0, 0.0
-    while True:
-        for frame in decoder.feed(sonar.read(9)):
-            free = frame.distance_m(Model.LUNA) >= CRITICAL_M
-            wanted = 9.0 if free and time.monotonic() - begun_s > 1.0 else 0.0
-            due_s = 0.0 if wanted < speed else due_s
-            speed = wanted
-        pico.read(4096)
-        if time.monotonic() >= due_s:
-            due_s = time.monotonic() + 0.02
-            pico.write(encode(Drive(next(numbers) % 65_536, speed, speed, 0.0)))
 
 
 def reflex_s(pico: Pico, front: Sonar) -> list[float]:
@@ -236,41 +200,30 @@ def by_key() -> list[float]:
         chassis = {"run": "nodes.chassis", "params": {"port": str(Path(name, "pico"))}}
         document = {"extends": str(ROOT / "profiles" / "09-brain.yaml"), "title": {"en": "Space"}}
         profile.write_text(json.dumps({**document, "nodes": {"chassis": chassis}}))
-        with deck(Path(name), str(profile)) as terminal:
+        with deck(Path(name), str(profile), domain=DOMAIN) as terminal:
             terminal.wait_for("10/10")
             pico.wait(time.monotonic(), stands)
             return key_s(terminal, pico)
 
 
-def row(name: str, seconds: Sequence[float], goals_ms: str) -> str:
-    """Return a line of the table."""
+def row(name: str, seconds: Sequence[float], goals_ms: str) -> list[str]:
     late = sorted(seconds)[min(len(seconds) - 1, int(0.99 * len(seconds)))]
-    figures = (statistics.median(seconds), late, max(seconds))
-    return f"| {name} | {' | '.join(f'{1000 * value:.1f}' for value in figures)} | {goals_ms} |"
+    return [name, *(f"{1000 * value:.1f}" for value in (statistics.median(seconds), late, max(seconds))), goals_ms]
 
 
 def main() -> None:
-    """Measure all three."""
+    """Measure both."""
     beside = running("-m", "tui", "run", "09-brain", "--domain", str(DOMAIN + 1), domain=DOMAIN + 1)
-    with tempfile.TemporaryDirectory() as name, beside, devices(Path(name)) as (pico, front):
-        folder = Path(name)
-        with nodes(folder):
-            robot = reflex_s(pico, front)
-        with running("-m", "bench.stop", str(folder / "tof_front"), str(folder / "pico"), domain=DOMAIN):
-            alone = reflex_s(pico, front)
+    with tempfile.TemporaryDirectory() as name, beside, devices(Path(name)) as (pico, front), nodes(Path(name)):
+        robot = reflex_s(pico, front)
     keys = by_key()
     print(f"{STOPS} stops and {PRESSES} presses; load of the machine {os.getloadavg()[0]:.1f}\n")
-    print("| to the stop at the Pico | median, ms | 99th percentile, ms | longest, ms | goals, ms |")
-    print("| --- | --- | --- | --- | --- |")
-    print(row("from a frame: the robot's nodes, lesson 9 beside", robot, "25 / 60"))
-    print(row("from a frame: one process with pyserial, lesson 9 beside", alone, "-"))
-    print(row("from the space bar", keys, "30"))
+    table(
+        ("to the stop at the Pico", "median, ms", "99th percentile, ms", "longest, ms", "goals, ms"),
+        row("from a frame: the robot's nodes, lesson 9 beside", robot, "25 / 60"),
+        row("from the space bar", keys, "30"),
+    )
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["command"]:
-        command()
-    elif sys.argv[1:]:
-        bare(*sys.argv[1:])
-    else:
-        main()
+    command() if len(sys.argv) > 1 else main()

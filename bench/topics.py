@@ -6,62 +6,54 @@ memory, and the same CPU while the picture is shown.
 
 from __future__ import annotations
 
+import contextlib
 import heapq
 import os
-import statistics
-import subprocess
 import sys
 import tempfile
 import time
-from contextlib import contextmanager
 from itertools import cycle
 from pathlib import Path
+from statistics import median
 from typing import TYPE_CHECKING
 
-from bench.processes import cpu_s, pss_mb, stdin_closed
-from bench.screen import key_delays_ms, screen_processes
-from tests.e2e.terminal import Terminal, own_folders
+from bench.processes import cpu_s, deck, of_the_screen, pss_mb, running, table
+from bench.screen import key_delays_ms
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from tests.e2e.terminal import Terminal
 
-DOMAIN = os.environ.get("BENCH_DOMAIN", "81")
+DOMAIN = int(os.environ.get("BENCH_DOMAIN", "81"))
 NUMBERS = tuple(f"/load/float_{number:02}" for number in range(100))
 PICTURE = "/load/picture"
 RATES_HZ = {**dict.fromkeys(NUMBERS, 100.0), PICTURE: 30.0}
-WARM_UP_S = 8.0
-MEASURE_S = 10.0
-PRESSES = 40
-ROUNDS = 3
-COLUMNS, ROWS = 120, 230
+WARM_UP_S, MEASURE_S = 8.0, 10.0
+PRESSES, ROUNDS = 40, 3
+SIZE = (120, 230)
 """Half of the rows are the list's."""
+PROFILE = "title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n"
 
 
 def load() -> None:
-    """Publish until stdin is closed; delays are made up for, so the mean rates are exact."""
-    from rclpy.context import Context
-    from rclpy.node import Node
+    """Publish until a signal; delays are made up for, so the mean rates are exact."""
+    import rclpy
     from rclpy.serialization import serialize_message
     from sensor_msgs.msg import Image
     from std_msgs.msg import Float32
 
-    def picture(grey: int) -> Image:
+    def picture(grey: int) -> bytes:
         made = Image(width=640, height=480, encoding="bgr8", step=3 * 640)
         made.data.frombytes(bytes([grey]) * (3 * 640 * 480))
-        return made
+        return serialize_message(made)
 
-    context = Context()
-    context.init(args=[], domain_id=int(DOMAIN))
-    node = Node("load", context=context, enable_rosout=False, start_parameter_services=False)
+    rclpy.init()
+    node = rclpy.create_node("load", enable_rosout=False, start_parameter_services=False)
     numbers = [serialize_message(Float32(data=0.01 * n)) for n in range(997)]
-    pictures = [serialize_message(picture(grey)) for grey in range(0, 250, 25)]
     lines = {topic: (node.create_publisher(Float32, topic, 10), cycle(numbers)) for topic in NUMBERS}
-    lines[PICTURE] = (node.create_publisher(Image, PICTURE, 10), cycle(pictures))
-    ended = stdin_closed()
-    print("ready", flush=True)
+    lines[PICTURE] = (node.create_publisher(Image, PICTURE, 10), cycle([picture(n) for n in range(0, 250, 25)]))
     begun_s = time.monotonic()
     due = [(begun_s + 0.0001 * n, topic) for n, topic in enumerate(lines)]
-    while not ended.is_set():
+    while rclpy.ok():
         at_s, topic = due[0]
         if (wait_s := at_s - time.monotonic()) > 0:
             time.sleep(wait_s)
@@ -69,40 +61,6 @@ def load() -> None:
         publisher, messages = lines[topic]
         publisher.publish(next(messages))
         heapq.heapreplace(due, (at_s + 1 / RATES_HZ[topic], topic))
-    node.destroy_node()
-    context.try_shutdown()
-
-
-@contextmanager
-def loaded() -> Iterator[None]:
-    """Run the load in a process of its own."""
-    env = {**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    argv = [sys.executable, "-m", "bench.topics", "load"]
-    process = subprocess.Popen(argv, env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    try:
-        assert process.stdout is not None
-        process.stdout.readline()
-        yield
-    finally:
-        process.communicate(timeout=30)
-
-
-@contextmanager
-def topics_open(folder: Path) -> Iterator[Terminal]:
-    """Run the program in a terminal tall enough for all topics, with the Topics screen open."""
-    profile = folder / "nothing.yaml"
-    profile.write_text("title: {en: Nothing}\nnodes:\n  sleep: {exec: [sleep, infinity]}\n")
-    argv = [sys.executable, "-m", "tui", str(profile), "--domain", DOMAIN, "--lang", "en"]
-    # Over SSH, pictures would be limited.
-    terminal = Terminal(argv, COLUMNS, ROWS, own_folders(folder, SSH_CONNECTION=""))
-    try:
-        terminal.wait_for("1/1")
-        terminal.press("f3")
-        terminal.wait_for(NUMBERS[3])
-        time.sleep(WARM_UP_S)
-        yield terminal
-    finally:
-        terminal.close()
 
 
 def rates_shown(text: str) -> dict[str, float]:
@@ -113,8 +71,8 @@ def rates_shown(text: str) -> dict[str, float]:
 
 def costs(terminal: Terminal) -> tuple[float, float, float, int]:
     """Return CPU in percent of a core, kB/s to the terminal, the worst error in percent, and the fewest rates."""
-    pids = screen_processes(terminal)
-    cpu, sent, begun_s = cpu_s(pids), terminal.received, time.monotonic()
+    processes = of_the_screen(terminal)
+    cpu, sent, begun_s = cpu_s(processes), terminal.received, time.monotonic()
     worst, fewest = 0.0, len(NUMBERS)
     while time.monotonic() - begun_s < MEASURE_S:
         time.sleep(1.0)
@@ -122,38 +80,48 @@ def costs(terminal: Terminal) -> tuple[float, float, float, int]:
         fewest = min(fewest, len(shown))
         worst = max([worst, *(100 * abs(hz / RATES_HZ[topic] - 1) for topic, hz in shown.items())])
     passed_s = time.monotonic() - begun_s
-    return 100 * (cpu_s(pids) - cpu) / passed_s, (terminal.received - sent) / passed_s / 1000, worst, fewest
+    return 100 * (cpu_s(processes) - cpu) / passed_s, (terminal.received - sent) / passed_s / 1000, worst, fewest
 
 
 def main() -> None:
     """Measure, and print the results."""
     listed, shown, delays, memory = [], [], [], 0.0
-    with loaded(), tempfile.TemporaryDirectory() as name:
+    with running("-m", "bench.topics", "load", domain=DOMAIN), tempfile.TemporaryDirectory() as name:
+        profile = Path(name, "nothing.yaml")
+        profile.write_text(PROFILE)
         for _ in range(ROUNDS):
-            with topics_open(Path(name)) as terminal:
+            with deck(Path(name), str(profile), domain=DOMAIN, size=SIZE) as terminal:
+                terminal.wait_for("1/1")
+                terminal.press("f3")
+                terminal.wait_for(NUMBERS[3])
+                time.sleep(WARM_UP_S)
                 listed.append(costs(terminal))
                 delays += key_delays_ms(terminal, PRESSES)
-                terminal.press("/")
-                terminal.type(f"{PICTURE}\r")
+                terminal.type(f"/{PICTURE}\r")
                 terminal.wait_for("640×480")
                 shown.append(costs(terminal))
-                memory = pss_mb(screen_processes(terminal))
-    print(f"at {COLUMNS}x{ROWS}; medians of {ROUNDS} turns\n")
-    print("| | | goal |")
-    print("| --- | --- | --- |")
-    print(f"| rates in the list, fewest | {min(turn[3] for turn in listed)} of {len(NUMBERS)} | all |")
-    print(f"| worst error of a rate | {max(turn[2] for turn in listed):.1f} % | 2 % |")
-    print(f"| a key is answered, median | {statistics.median(delays):.0f} ms | 100 ms |")
-    print(f"| the slowest of {len(delays)} keys | {max(delays):.0f} ms | - |")
-    for what, turns in (("the list", listed), ("the picture shown", shown)):
-        cpu, sent = (statistics.median(turn[column] for turn in turns) for column in (0, 1))
-        print(f"| {what}: CPU of screen, observer and supervisor | {cpu:.0f} % of a core | - |")
-        print(f"| {what}: to the terminal | {sent:.0f} kB/s | - |")
-    print(f"| PSS of the same | {memory:.0f} MB | - |")
+                memory = pss_mb(of_the_screen(terminal))
+    print(f"at {SIZE[0]}x{SIZE[1]}; medians of {ROUNDS} turns\n")
+    rows = [
+        (f"{what}: {figure}", f"{median(turn[column] for turn in turns):.0f} {unit}", "-")
+        for what, turns in (("the list", listed), ("the picture shown", shown))
+        for column, figure, unit in ((0, "CPU of screen, observer and supervisor", "% of a core"),
+                                     (1, "to the terminal", "kB/s"))
+    ]  # fmt: skip
+    table(
+        ("", "", "goal"),
+        ("rates in the list, fewest", f"{min(turn[3] for turn in listed)} of {len(NUMBERS)}", "all"),
+        ("worst error of a rate", f"{max(turn[2] for turn in listed):.1f} %", "2 %"),
+        ("a key is answered, median", f"{median(delays):.0f} ms", "100 ms"),
+        (f"the slowest of {len(delays)} keys", f"{max(delays):.0f} ms", "-"),
+        *rows,
+        ("PSS of the same", f"{memory:.0f} MB", "-"),
+    )
 
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
-        load()
+        with contextlib.suppress(Exception):  # Its context ends in the middle of a message.
+            load()
     else:
         main()

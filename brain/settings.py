@@ -14,6 +14,7 @@ repository one day.
 from __future__ import annotations
 
 import os
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import urlsplit
@@ -43,6 +44,8 @@ FROM_ENVIRONMENT = {
 }
 KEY_VARIABLE = "DECK_LLM_KEY"
 """Holds the key where no other variable is named."""
+CLIENT = "openai"
+"""The library that speaks to the server."""
 _RULES = Rules(shares=False, longest=64 * 1024, deepest=8)
 
 
@@ -126,9 +129,16 @@ def load(path: Path | None = None, environ: Mapping[str, str] | None = None) -> 
     if not given:
         return None
     try:
-        return ModelSettings.model_validate(given)
+        settings = ModelSettings.model_validate(given)
     except ValidationError as error:
         raise _fault(error, path, tree, variables) from None
+    if find_spec(CLIENT) is None:
+        raise ModelError(
+            FaultKind.SETTINGS,
+            say("{package} is not installed", package=CLIENT),
+            say("pip install {install}", install="'deck-robot[brain]'"),
+        )
+    return settings
 
 
 def required() -> ModelSettings:

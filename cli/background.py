@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
-from cli.commands import command
-from cli.domains import in_own_domain, stop_is_kept, stop_words
+from cli.commands import Parser, command
+from cli.domains import profile_to_run, stop_is_kept, stop_words
 from cli.health import settled, well
 from cli.options import add_json, add_profile, add_profile_options, add_running, count
 from cli.report import TextReport
@@ -24,18 +24,11 @@ from launcher.errors import (
     UnknownNodeError,
 )
 from launcher.events import ClosedEvent, LogEvent
-from launcher.processes.interrupts import run
-from launcher.profile.catalog import find_profile
+from launcher.status import NodeState, NodeStatus, SessionInfo
 from text.i18n import _, language, localized, ngettext
 from text.output import RED, Paint, json_text, say_error, write
 from text.plain import plain
 from text.program import typable
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
-    from launcher.status import NodeState, NodeStatus, SessionInfo
 
 UP_WITHIN_S = 60.0
 """When `up` stops waiting, whatever limits the profile has."""
@@ -49,22 +42,6 @@ def _up_options(parser: Parser) -> None:
     add_profile_options(parser)
 
 
-@command("up", _up_options)
-def up_command(options: Namespace) -> int:
-    """Start a profile in the background, wait until it is up, and show its nodes."""
-    return run(_up(options))
-
-
-def _ps_options(parser: Parser) -> None:
-    add_json(parser)
-
-
-@command("ps", _ps_options)
-def ps_command(options: Namespace) -> int:
-    """Show the running sessions."""
-    return run(_ps(options))
-
-
 def _logs_options(parser: Parser) -> None:
     parser.add_argument("node", nargs="?", metavar=_("NODE"), help=_("name of the node; all of them by default"))
     parser.add_argument("-f", "--follow", action="store_true", help=_("keep showing new lines"))
@@ -74,31 +51,10 @@ def _logs_options(parser: Parser) -> None:
     parser.add_argument("--profile", metavar=_("NAME"), help=_("which one, if several are running"))
 
 
-@command("logs", _logs_options)
-def logs_command(options: Namespace) -> int:
-    """Show the log of one node or of all."""
-    return run(_logs(options))
-
-
-@command("down", add_running)
-def down_command(options: Namespace) -> int:
-    """Stop a running session."""
-    return run(_down(options))
-
-
-async def _up(options: Namespace) -> int:
-    # Validation imports pydantic, which the other commands do not need.
-    from launcher.profile.load import load_profile
-    from launcher.serial_ports import serial_ports
-
-    profile = load_profile(
-        find_profile(options.profile),
-        hardware=options.hardware,
-        overrides=options.overrides,
-        domain=options.domain,
-        ports=serial_ports,
-    )
-    profile = in_own_domain(profile)
+@command("up", _up_options)
+async def up_command(options: Namespace) -> int:
+    """Start a profile in the background, wait until it is up, and show its nodes."""
+    profile = profile_to_run(options)
     try:
         link = await client.launch(profile, foreground=False, node_lang=language(), supervisor=options.supervisor)
     except AlreadyRunningError as error:
@@ -128,10 +84,12 @@ async def _settle(link: client.SupervisorClient) -> None:
     """Wait until every node is up, or has failed to start, and this no longer changes."""
     listening = asyncio.ensure_future(_listen(link))
     try:
-        while not settled(link.nodes) or _states(link) != await _states_later(link):
+        before: list[NodeState] | None = None
+        while before != (now := [node.state for node in link.nodes.values()]):
             if listening.done():
                 raise ConnectionLostError(_("the supervisor ended while the nodes were starting"))
-            await asyncio.sleep(LOOK_S)
+            before = now if settled(link.nodes) else None
+            await asyncio.sleep(LOOK_S if before is None else STEADY_S)
     finally:
         listening.cancel()
 
@@ -142,35 +100,28 @@ async def _listen(link: client.SupervisorClient) -> None:
         pass
 
 
-def _states(link: client.SupervisorClient) -> list[NodeState]:
-    return [node.state for node in link.nodes.values()]
-
-
-async def _states_later(link: client.SupervisorClient) -> list[NodeState]:
-    await asyncio.sleep(STEADY_S)
-    return _states(link)
-
-
 async def _asked_all() -> tuple[
     list[tuple[SessionInfo, tuple[NodeStatus, ...]]], list[tuple[SessionInfo, dict[str, int]]]
 ]:
     """Ask all supervisors; return the sessions with their nodes, and those that do not answer."""
     found: list[tuple[SessionInfo, tuple[NodeStatus, ...]]] = []
-    silent: list[SessionInfo] = []
+    silent: list[tuple[SessionInfo, dict[str, int]]] = []
     for session in client.running():
         try:
             link = await client.attach(session.run_id)
         except SilentSupervisorError:
-            silent.append(session)
+            silent.append((session, nodes_of(session.run_id)))
             continue
         except SessionError:
             continue  # It has just ended.
         found.append((link.session, tuple(link.nodes.values())))
         await link.aclose()
-    return found, [(session, nodes_of(session.run_id)) for session in silent]
+    return found, silent
 
 
-async def _ps(options: Namespace) -> int:
+@command("ps", add_json)
+async def ps_command(options: Namespace) -> int:
+    """Show the running sessions; return 1 if the supervisor of one does not answer."""
     found, silent = await _asked_all()
     if options.json:
         answering = [as_json(*each) for each in found]
@@ -192,7 +143,8 @@ async def _ps(options: Namespace) -> int:
     return 1 if silent else 0
 
 
-async def _logs(options: Namespace) -> int:
+@command("logs", _logs_options)
+async def logs_command(options: Namespace) -> int:
     link = await _attached(options.profile, options.node)
     try:
         names = [options.node] if options.node else list(link.nodes)
@@ -224,7 +176,8 @@ async def _follow(link: client.SupervisorClient, node: str | None, report: TextR
     return 0
 
 
-async def _down(options: Namespace) -> int:
+@command("down", add_running)
+async def down_command(options: Namespace) -> int:
     try:
         link = await client.attach(options.name)
     except SilentSupervisorError:

@@ -7,18 +7,18 @@ or its help. `deck PROFILE` needs no command word, so the word is looked for fir
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Coroutine, Sequence
 from importlib import import_module
-from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
+from typing import IO, Any, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from cli.options import add_language, add_profile_options, add_screen
-from launcher.processes.interrupts import held
+from launcher.processes.interrupts import held, run
 from text.i18n import N_, _, ngettext
 from text.output import harmless
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    Handler: TypeAlias = Callable[[argparse.Namespace], int]
+Handler: TypeAlias = Callable[[argparse.Namespace], int]
+Work: TypeAlias = Callable[[argparse.Namespace], int | Coroutine[Any, Any, int]]
+T = TypeVar("T", bound=Work)
 
 
 class Place(NamedTuple):
@@ -42,7 +42,7 @@ COMMANDS = {
     "attach": Place("cli.screen", N_("open the screen of a profile running in the background")),
     "down": Place("cli.background", N_("stop a profile running in the background")),
     "stop": Place("cli.stop", N_("stop a running robot at once: the emergency stop, without ROS")),
-    "watch": Place("cli.watch", N_("open the screen on nodes that others have started in a ROS domain")),
+    "watch": Place("cli.screen", N_("open the screen on nodes that others have started in a ROS domain")),
     "level": Place("cli.level", N_("show or set from which severity on a running node logs")),
     "frames": Place("cli.frames", N_("print the tree of frames and what is wrong with it")),
     "mcp": Place("cli.mcp", N_("let agents look at the robot, propose, and drive only with consent (MCP)")),
@@ -54,9 +54,7 @@ COMMANDS = {
     "lesson": Place("cli.lesson", N_("check a lesson that you have written, or begin one")),
     "grade": Place("cli.grade", N_("grade the files of folders by the steps of a lesson, whatever they do")),
     "model": Place("cli.model", N_("a language model on this machine, for Deck to ask")),
-    "shell": Place(
-        "cli.shell.command", N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python")
-    ),
+    "shell": Place("cli.shell", N_("open a shell in the lesson's domain, with ros2, colcon and Deck's Python")),
     "diagnostics": Place("cli.diagnostics", N_("show what drivers and others say on /diagnostics, as a tree")),
     "doctor": Place(
         "cli.doctor.command",
@@ -67,25 +65,28 @@ HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
 WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
 """Options that may come before the command word."""
-_ANNOUNCED: dict[str, tuple[Callable[[Parser], None], Handler]] = {}
+_ANNOUNCED: dict[str, tuple[Callable[[Parser], None], Work]] = {}
 
 
-def command(name: str, options: Callable[[Parser], None]) -> Callable[[Handler], Handler]:
+def command(name: str, options: Callable[[Parser], None]) -> Callable[[T], T]:
     """Announce a function as a command, which returns the exit code; `options` declares what it takes."""
 
-    def announced(handler: Handler) -> Handler:
-        _ANNOUNCED[name] = (options, handler)
-        return handler
+    def announced(work: T) -> T:
+        _ANNOUNCED[name] = (options, work)
+        return work
 
     return announced
 
 
 def handler_of(name: str) -> Handler:
-    """Return what carries a command out."""
-    return _announced(name)[1]
+    def handle(options: argparse.Namespace) -> int:
+        done = _announced(name)[1](options)
+        return done if isinstance(done, int) else run(done)
+
+    return handle
 
 
-def _announced(name: str) -> tuple[Callable[[Parser], None], Handler]:
+def _announced(name: str) -> tuple[Callable[[Parser], None], Work]:
     with held():
         import_module("cli.screen" if name == OPEN else COMMANDS[name].module)
     return _ANNOUNCED[name]
@@ -120,7 +121,6 @@ def wanted_language(arguments: Sequence[str]) -> str | None:
 
 
 def parser_of(name: str) -> Parser:
-    """Return the parser of a command."""
     if name == OPEN:
         return _open_parser()
     parser = Parser(prog=f"deck {name}", description=_(COMMANDS[name].help), allow_abbrev=False)

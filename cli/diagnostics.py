@@ -4,25 +4,18 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
-from cli.commands import command
-from cli.observing import FOUND_S, domain_view, tell_that_it_takes_time
+from cli.commands import Parser, command
+from cli.observing import FOUND_S, DomainView, domain_view, tell_that_it_takes_time
 from cli.options import add_graph, add_json, seconds
 from graph.data import GraphUpdate
-from graph.diagnostics import DiagnosticsBook, StatusLevel, tree
+from graph.diagnostics import DiagnosticsBook, StatusLevel, StatusRecord, TreeRow, tree
 from launcher.errors import UsageError
 from robot.topics import DIAGNOSTICS
 from text.i18n import N_, _
 from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
-    from cli.observing import DomainView
-    from graph.diagnostics import StatusRecord, TreeRow
 
 LOOKS = {
     StatusLevel.OK: (N_("ok"), GREEN),
@@ -44,7 +37,7 @@ def _diagnostics_options(parser: Parser) -> None:
 @command("diagnostics", _diagnostics_options)
 def diagnostics_command(options: Namespace) -> int:
     """Listen for a moment, and show the tree; return 1 if anything is not all right."""
-    with domain_view(options.domain, options.discovery, follow=(DIAGNOSTICS,)) as view:
+    with domain_view(options.domain, options.discovery, followed=frozenset({DIAGNOSTICS})) as view:
         words = _("listening to {topic} in domain {domain} for {seconds:g} s")
         tell_that_it_takes_time(words.format(topic=DIAGNOSTICS, domain=view.domain, seconds=options.seconds))
         book = _heard(view, options.seconds)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from launcher.domain.discovery import OF_PEERS, RANGE, VARIABLES
 from launcher.domain.domain import choose_domain
 from launcher.errors import DomainTakenError, UsageError
+from launcher.profile.catalog import find_profile
 from launcher.runs.shared_domain import apart_from_classmates, refuse_shared_domain
 from robot.safety.stop_file import stop_place
 from text.i18n import _, localized
@@ -47,24 +49,31 @@ def beyond_this_machine(discovery: str | tuple[str, ...]) -> str:
     return say("only this machine was looked at: --discovery subnet looks on the network, too")
 
 
-def in_own_domain(profile: Profile) -> Profile:
-    """Return the profile in the domain it is to run in, and say what has to be said of it."""
+def profile_to_run(options: Namespace) -> Profile:
+    """Return the profile of a command line in the domain it is to run in, and say what has to be said of it."""
+    # Validation imports pydantic, which most commands do not need.
+    from launcher.profile.load import load_profile
+    from launcher.serial_ports import serial_ports
+
+    profile = load_profile(
+        find_profile(options.profile),
+        hardware=options.hardware,
+        overrides=options.overrides,
+        domain=options.domain,
+        ports=serial_ports,
+    )
     settled = apart_from_classmates(profile)
     if settled.domain != profile.domain:
         words = _("somebody else on this account is in domain {taken}: this one runs in domain {domain}")
         say_error(words.format(taken=profile.domain, domain=settled.domain))
-    warn_of_shared_domain(settled)
-    return settled
-
-
-def warn_of_shared_domain(profile: Profile) -> None:
-    """Name other sessions in the domain; the supervisor refuses those that exclude each other."""
     try:
-        refuse_shared_domain(profile)
+        refuse_shared_domain(settled)
     except DomainTakenError as taken:
+        # The supervisor refuses those that exclude each other.
         if taken.can_share:
             say_error(localized(taken.args[0]))
             say_error(_("their nodes will see each other"))
+    return settled
 
 
 def stop_is_kept(domain: int) -> bool:

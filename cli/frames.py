@@ -7,31 +7,27 @@ parents, and `findings`.
 from __future__ import annotations
 
 import sys
-import time
+from argparse import Namespace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from cli.commands import command
-from cli.domains import beyond_this_machine, running_domain
+from cli.commands import Parser, command
+from cli.domains import beyond_this_machine
+from cli.observing import DomainView, domain_view
 from cli.options import add_graph, add_json, seconds
-from launcher.errors import UsageError
 from text.i18n import _, localized
-from text.output import DIM, RED, Paint, json_text, keep_stdout_to_ourselves, table, write
+from text.output import DIM, RED, Paint, json_text, table, write
 from tui.frame_tree import cells
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Sequence
-
-    from cli.commands import Parser
     from graph.data import FrameRow, GraphUpdate
-    from graph.frames.findings import FrameFinding
+    from graph.findings.finding import GraphFinding
     from graph.frames.tree import FrameTree
 
-LOOK_AGAIN_S = 0.05
 STEADY_S = 2.0
 """While nodes or frames have been found within so many seconds, there may be more."""
 PATIENCE_S = 6.0
-"""Seconds more for ROS to begin, and for what is still to come."""
+"""Seconds more for what is still to come."""
 LOOK_S = 3.0
 """Seconds in which nodes are found, rates measured and silence noticed."""
 
@@ -50,65 +46,38 @@ def _frames_options(parser: Parser) -> None:
 
 @command("frames", _frames_options)
 def frames_command(options: Namespace) -> int:
-    """Listen for some seconds and print; return 1 if there is no frame or anything is wrong."""
     from graph.frames.findings import findings_in
     from graph.frames.tree import FrameTree
 
-    _name, domain, discovery = running_domain(options.domain, options.discovery)
-    keep_stdout_to_ourselves()
-    update = _listen(domain, discovery, options.seconds or LOOK_S)
+    with domain_view(options.domain, options.discovery, frames=True, all_topics=True, all_images=False) as view:
+        update = _listen(view, options.seconds or LOOK_S)
     tree = FrameTree(update.frames)
     findings = findings_in(update, tree)
     if options.json:
         rows = [_for_programs(row) for row in update.frames]
         found = [_finding_for_programs(one) for one in findings]
-        write(json_text({"domain": domain, "frames": rows, "findings": found}, indent=2))
+        write(json_text({"domain": view.domain, "frames": rows, "findings": found}, indent=2))
     else:
-        _show(tree, findings, domain)
-        if not update.frames and (hint := beyond_this_machine(discovery)):
+        _show(tree, findings, view.domain)
+        if not update.frames and (hint := beyond_this_machine(view.discovery)):
             write(localized(hint))
     return 1 if findings or not update.frames else 0
 
 
-def _listen(domain: int, discovery: str | tuple[str, ...], seconds: float) -> GraphUpdate:
-    """Return the last update; raises UsageError if ROS cannot be used."""
-    from graph.data import GraphUpdate, Interest
-    from graph.observer.observer import Observer
-
-    newest = [GraphUpdate(0.0)]
-
-    def take(update: GraphUpdate) -> None:
-        newest[0] = update
-
-    observer = Observer(domain, discovery)
-    observer.want(Interest(frames=True, all_topics=True, all_images=False))
-    observer.start(take)
-    try:
-        _wait(newest, seconds)
-    finally:
-        observer.stop()
-    if newest[0].error:
-        raise UsageError(newest[0].error)
-    return newest[0]
-
-
-def _wait(newest: Sequence[GraphUpdate], seconds: float) -> None:
-    """Wait so long from the first update on, and longer for what is still to come."""
+def _listen(view: DomainView, seconds: float) -> GraphUpdate:
+    """Return the last update after so long, and longer for what is still to come."""
+    from graph.data import GraphUpdate
     from graph.frames.findings import is_settling
 
-    started_s = begun_s = changed_s = time.monotonic()
-    known: tuple[int, ...] = ()
-    while not newest[0].error:
-        update, now_s = newest[0], time.monotonic()
-        if not update.time_s and now_s - started_s < PATIENCE_S:
-            begun_s = now_s
-        if known != (known := (len(update.nodes), len(update.frames))):
-            changed_s = now_s
-        passed_s = now_s - begun_s
-        coming = is_settling(update) or now_s - changed_s < STEADY_S
+    update, known, changed_s = GraphUpdate(0.0), (0, 0), 0.0
+    while True:
+        for update in view.updates():
+            if known != (known := (len(update.nodes), len(update.frames))):
+                changed_s = view.listened_s()
+        passed_s = view.listened_s()
+        coming = is_settling(update) or passed_s - changed_s < STEADY_S
         if passed_s >= seconds and not (coming and passed_s < seconds + PATIENCE_S):
-            return
-        time.sleep(LOOK_AGAIN_S)
+            return update
 
 
 def _for_programs(row: FrameRow) -> dict[str, Any]:
@@ -130,16 +99,11 @@ def _for_programs(row: FrameRow) -> dict[str, Any]:
     }
 
 
-def _finding_for_programs(one: FrameFinding) -> dict[str, Any]:
-    return {
-        "key": one.trouble.value,
-        "frames": list(one.frames),
-        "text": localized(one.text),
-        "mend": localized(one.advice),
-    }
+def _finding_for_programs(one: GraphFinding) -> dict[str, Any]:
+    return {"key": one.rule, "frames": list(one.nodes), "text": localized(one.what), "mend": localized(one.mend)}
 
 
-def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> None:
+def _show(tree: FrameTree, findings: Sequence[GraphFinding], domain: int) -> None:
     paint = Paint(sys.stdout)
     lines = tree.lines()
     if not lines:
@@ -152,7 +116,7 @@ def _show(tree: FrameTree, findings: Sequence[FrameFinding], domain: int) -> Non
         for row in table(head, rows):
             write(row)
     for one in findings:
-        write(f"{paint('✗', RED)} {localized(one.text)}")
-        write(f"  {paint('-> ' + localized(one.advice), DIM)}")
+        write(f"{paint('✗', RED)} {localized(one.what)}")
+        write(f"  {paint('-> ' + localized(one.mend), DIM)}")
     if lines and not findings:
         write(_("✓ nothing is wrong with the frames"))

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import sys
+from argparse import Namespace
+from collections.abc import AsyncGenerator, Sequence
 from contextlib import aclosing
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_domain, add_seed, at_once, folder, seconds
 from course.folder.folder import folder_of
-from course.grade.formats import CLASSROOM50, FORMATS, look, message, remarks, title, writer_of
-from course.grade.grades import GradeState
+from course.grade.grades import CLASSROOM50, FORMATS, Grade, GradeState, StepGrade, writer_of
 from course.grade.grading import WITHIN_S, Terms, grade_all
-from course.grade.submission import check_gradable, default_folder, submissions
+from course.grade.submission import Submission, check_gradable, default_folder, submissions
 from course.grade.walls import bubblewrap_for
 from course.lessons.catalog import find_lesson
+from course.lessons.lesson import LessonFolder
 from course.results import State
 from launcher.errors import UsageError
 from launcher.processes.ending import ENDING
@@ -27,27 +28,13 @@ from text.output import BOLD, GREEN, RED, YELLOW, Paint, say_error, table, write
 from text.plain import plain
 from text.sentences import say
 
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Sequence
-
-    from cli.commands import Parser
-    from course.grade.grades import Grade, StepGrade
-    from course.grade.submission import Submission
-    from course.lessons.lesson import LessonFolder
-
 _WIDTH = 20
 """Room for the longest state."""
 ALL_PASSED, SOME_FAILED, NOT_GRADED = 0, 1, 3
-INTERRUPTED = 130
 _STATES = {
-    "not yet": N_("not yet"),
-    "passed": N_("passed"),
-    "failed": N_("not passed"),
-    "could not be judged": N_("could not be judged"),
-    "could not be graded": N_("could not be graded"),
-    "waits": N_("waits"),
-}
+    "not yet": N_("not yet"), "passed": N_("passed"), "failed": N_("not passed"), "waits": N_("waits"),
+    "could not be judged": N_("could not be judged"), "could not be graded": N_("could not be graded"),
+}  # fmt: skip
 _COLOURS = {State.PASSED: GREEN, State.FAILED: RED, State.WAITS: YELLOW, State.UNJUDGED: RED}
 
 
@@ -95,11 +82,12 @@ def _grade_options(parser: Parser) -> None:
 
 @command("grade", _grade_options)
 def grade_command(options: Namespace) -> int:
-    """Grade the folders; write the grades; return 0 if all have passed."""
     lesson = find_lesson(options.lesson)
     check_gradable(lesson)
     folders = [Path(name) for name in options.folders]
     chosen = submissions(lesson, folders or [default_folder(lesson, folder_of(lesson))])
+    if options.domain is not None and options.jobs > 1:
+        raise UsageError(say("--domain is for one job at a time: leave out --jobs"))
     terms = Terms(
         lesson,
         bubblewrap="" if options.unconfined else _bubblewrap(lesson),
@@ -108,17 +96,32 @@ def grade_command(options: Namespace) -> int:
         within_s=options.within,
         language=language(),
     )
-    domains = _domains(options)
     writer = writer_of(options.format, len(chosen)) if options.format else None
     output = _writable(options.output) if options.output else None
     report = _GradeReport(len(chosen), aloud=writer is None or output is not None)
-    grades = run(_graded(terms, chosen, (options.jobs, domains), report))
+    domains = [] if options.domain is None else [options.domain]
+    grades = run(_graded(grade_all(terms, chosen, jobs=options.jobs, domains=domains, on_step=report.step), report))
     report.end(grades)
-    if writer is not None:
-        _put(writer(grades), output)
-    elif output is not None:
-        _put("\n".join(report.lines) + "\n", output)
+    if writer is not None or output is not None:
+        _put(writer(grades) if writer else "\n".join(report.lines), output)
     return exit_code(grades, options.format)
+
+
+async def _graded(coming: AsyncGenerator[tuple[int, Grade], None], report: _GradeReport) -> list[Grade]:
+    """Return the grades in the folders' order."""
+    grades: dict[int, Grade] = {}
+    loop, task = asyncio.get_running_loop(), asyncio.current_task()
+    assert task is not None
+    for each in ENDING:
+        loop.add_signal_handler(each, task.cancel)
+    try:
+        async with aclosing(coming):
+            async for number, grade in coming:
+                grades[number] = grade
+                report.grade(grade)
+    except asyncio.CancelledError:
+        raise KeyboardInterrupt from None
+    return [grades[number] for number in sorted(grades)]
 
 
 def exit_code(grades: Sequence[Grade], format_name: str | None) -> int:
@@ -129,29 +132,16 @@ def exit_code(grades: Sequence[Grade], format_name: str | None) -> int:
     states = {grade.state for grade in grades}
     if GradeState.UNGRADED in states:
         return NOT_GRADED
-    if GradeState.FAILED in states and format_name != CLASSROOM50:
-        return SOME_FAILED
-    return ALL_PASSED
+    return SOME_FAILED if GradeState.FAILED in states and format_name != CLASSROOM50 else ALL_PASSED
 
 
 def _bags(folder: str | None, chosen: Sequence[Submission]) -> Path | None:
     """Return the folder for recordings; raises UsageError if one of them is there already."""
-    if folder is None:
-        return None
-    for one in chosen:
-        path = Path(folder) / one.student.replace("/", "-")
+    for one in chosen if folder is not None else ():
+        path = Path(folder or "", one.student.replace("/", "-"))
         if path.exists():
             raise UsageError(say("{path} is there already: choose another name", path=str(path)))
-    return Path(folder)
-
-
-def _domains(options: Namespace) -> Sequence[int]:
-    """Return the domain that was asked for, or any; raises UsageError if several would share it."""
-    if options.domain is None:
-        return ()
-    if options.jobs > 1:
-        raise UsageError(say("--domain is for one job at a time: leave out --jobs"))
-    return [options.domain]
+    return None if folder is None else Path(folder)
 
 
 def _writable(name: str) -> Path:
@@ -165,11 +155,12 @@ def _writable(name: str) -> Path:
 
 
 def _put(text: str, output: Path | None) -> None:
+    text = text if text.endswith("\n") else f"{text}\n"
     if output is not None:
         # Lines end as the format has it.
         output.write_bytes(text.encode())
         return
-    sys.stdout.write(text if text.endswith("\n") else f"{text}\n")
+    sys.stdout.write(text)
     sys.stdout.flush()
 
 
@@ -187,25 +178,6 @@ def _bubblewrap(lesson: LessonFolder) -> str:
     return found
 
 
-async def _graded(
-    terms: Terms, chosen: Sequence[Submission], room: tuple[int, Sequence[int]], report: _GradeReport
-) -> list[Grade]:
-    """Grade them, as many at once as there is room; return the grades in the folders' order."""
-    grades: dict[int, Grade] = {}
-    loop, task = asyncio.get_running_loop(), asyncio.current_task()
-    assert task is not None
-    for each in ENDING:
-        loop.add_signal_handler(each, task.cancel)
-    try:
-        async with aclosing(grade_all(terms, chosen, jobs=room[0], domains=room[1], on_step=report.step)) as coming:
-            async for number, grade in coming:
-                grades[number] = grade
-                report.grade(grade)
-    except asyncio.CancelledError:
-        raise KeyboardInterrupt from None
-    return [grades[number] for number in range(len(chosen))]
-
-
 class _GradeReport:
     """What people read: of one folder, each step; of several, one table."""
 
@@ -220,15 +192,15 @@ class _GradeReport:
     def step(self, _submission: Submission, step: StepGrade) -> None:
         """A step has been judged: not for good, for its node may still fail."""
         if self._count == 1 and self._aloud:
-            say_error(f"{title(step)}: {_(_STATES[step.result.state.value])}")
+            say_error(f"{step.title}: {_(_STATES[step.result.state.value])}")
 
     def _say_step(self, step: StepGrade) -> None:
         state = step.result.state
         words = f"{_(_STATES[state.value]):{_WIDTH}}"
         points = f"{step.result.earned}/{step.result.points}"
-        rest = f"{points:>6}  {title(step)}"
+        rest = f"{points:>6}  {step.title}"
         self._write(f"{words}{rest}", f"{self._paint(words, _COLOURS.get(state, RED))}{rest}")
-        for more in filter(None, (message(step), look(step))):
+        for more in filter(None, (step.message, step.look)):
             self._write(f"{'':{_WIDTH + 8}}{more}")
 
     def grade(self, grade: Grade) -> None:
@@ -249,7 +221,7 @@ class _GradeReport:
         for line in others:
             self._write(line)
         for grade in grades:
-            for words in remarks(grade):
+            for words in grade.remarks:
                 self._write(f"{plain(grade.student)}: {words}")
         passed = sum(grade.state is GradeState.PASSED for grade in grades)
         words = _("passed: {passed} of {n}")
@@ -258,7 +230,7 @@ class _GradeReport:
     def _end_of_one(self, grade: Grade) -> None:
         for step in grade.steps:
             self._say_step(step)
-        for words in remarks(grade):
+        for words in grade.remarks:
             self._write(words)
         self._write(
             _("{state}: {points} of {most} points in {s:.0f} s (seed {seed})").format(
@@ -285,5 +257,5 @@ def _row(grade: Grade) -> list[str]:
         _(_STATES[grade.state.value]),
         f"{grade.points}/{grade.max_points}",
         *(str(step.result.earned) for step in grade.steps),
-        "" if first is None else f"{title(first)}: {message(first)}",
+        "" if first is None else f"{first.title}: {first.message}",
     ]

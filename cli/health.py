@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping
 
-from launcher.status import NodeState
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
-
-    from launcher.status import NodeStatus
+from launcher.status import NodeState, NodeStatus
 
 OTHER_TYPE = " is published as "
 """Part of the supervisor's message about a topic of another type: waiting does not help."""

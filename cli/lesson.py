@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_seed, at_once
 from course.lessons.catalog import find_lesson, lessons
 from course.proof.proof import ProofVerdict, incomplete, prove, variants
 from course.proof.skeleton import new_lesson
 from course.proof.trial import unused_domains
-from launcher.processes.interrupts import run
 from launcher.profile.defaults import shown
 from text.i18n import _, localized, ngettext
 from text.output import GREEN, RED, Paint, write
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Sequence
-
-    from cli.commands import Parser
-    from course.lessons.lesson import LessonFolder
 
 
 def _lesson_options(parser: Parser) -> None:
@@ -38,18 +30,12 @@ def _lesson_options(parser: Parser) -> None:
 
 
 @command("lesson", _lesson_options)
-def lesson_command(options: Namespace) -> int:
-    """Prove lessons, or begin a new one."""
+async def lesson_command(options: Namespace) -> int:
     if options.action == "new":
         folder = new_lesson(Path(options.lessons[0] if options.lessons else "my-lesson"))
         write(_("made {path}; next: deck lesson check {path}").format(path=plain(shown(folder))))
         return 0
     chosen = [find_lesson(name) for name in options.lessons] or list(lessons().values())
-    return run(_check(chosen, options.jobs, options.seed))
-
-
-async def _check(chosen: Sequence[LessonFolder], jobs: int, seed: int) -> int:
-    """Report each variant as it is proven; 0 if all do what they should."""
     paint = Paint(sys.stdout)
     wrong = 0
     for lesson in chosen:
@@ -57,7 +43,7 @@ async def _check(chosen: Sequence[LessonFolder], jobs: int, seed: int) -> int:
             write(f"{plain(lesson.name)}: {paint(localized(words), RED)}")
             wrong += 1
     everything = [variant for lesson in chosen for variant in variants(lesson)]
-    async for verdict in prove(everything, unused_domains(jobs), seed=seed):
+    async for verdict in prove(everything, unused_domains(options.jobs), seed=options.seed):
         write(f"{plain(verdict.variant.lesson.name)}: {_line(verdict, paint)}")
         wrong += bool(verdict.complaint)
     if wrong:
@@ -72,7 +58,7 @@ def _line(verdict: ProofVerdict, paint: Paint) -> str:
     variant = verdict.variant
     name = plain(variant.name)
     if verdict.complaint:
-        seed = "" if verdict.result is None else f" (seed {verdict.result.seed})"
+        seed = f" (seed {verdict.seed})" if verdict.seed else ""
         return f"{name}: {paint(localized(verdict.complaint), RED)}{seed}"
     well = _("passes") if variant.fails_at is None else _("fails, as it should")
     return f"{name}: {paint(well, GREEN)}"

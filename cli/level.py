@@ -5,9 +5,9 @@ Exit codes: 0 if it was read or set, 1 if the node refuses, does not answer, or 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import beyond_this_machine
 from cli.observing import domain_view
 from cli.options import add_graph
@@ -15,11 +15,6 @@ from graph.inner_states import LOG_LEVELS
 from text.i18n import _, localized
 from text.output import say_error, write
 from text.plain import plain
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
 
 
 def _level_options(parser: Parser) -> None:
@@ -38,7 +33,6 @@ def _level_options(parser: Parser) -> None:
 
 @command("level", _level_options)
 def level_command(options: Namespace) -> int:
-    """Print the level that the node has now."""
     from graph.observer.requests import LogLevel
 
     node = f"/{options.node.removeprefix('/')}"

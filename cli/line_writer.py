@@ -6,12 +6,9 @@ import os
 import select
 import threading
 from collections import deque
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from text.output import harmless
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 MOST_WAITING = 8_000_000
 """Most bytes that wait for the reader; lines beyond that are left out and counted."""

@@ -3,39 +3,30 @@
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
+from collections.abc import Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_json, add_profile_options
-from launcher.errors import ProfileError
+from launcher.errors import ProfileError, ProfileProblem
 from launcher.profile.catalog import find_profile, list_profiles
 from launcher.profile.defaults import shown
-from launcher.profile.load import faults_of, load_profile
+from launcher.profile.load import Profile, faults_of, load_profile
 from text.i18n import _, localized, ngettext, pick
 from text.output import DIM, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
 
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from pathlib import Path
 
-    from cli.commands import Parser
-    from launcher.errors import ProfileProblem
-    from launcher.profile.catalog import ProfileEntry
-    from launcher.profile.load import Profile
-
-
-def _list_options(parser: Parser) -> None:
-    add_json(parser)
-
-
-@command("list", _list_options)
+@command("list", add_json)
 def list_command(options: Namespace) -> int:
     """Show all profiles, broken ones with their first problem."""
     entries = list_profiles()
     if options.json:
-        write(json_text([_as_json(entry) for entry in entries], indent=2))
+        names = ("name", "path", "title", "about", "lesson", "nodes", "panels", "error")
+        told = [{**{name: getattr(entry, name) for name in names}, "path": str(entry.path)} for entry in entries]
+        write(json_text(told, indent=2))
         return 0
     width = max((len(entry.name) for entry in entries), default=0)
     paint = Paint(sys.stdout)
@@ -68,52 +59,40 @@ def _check_options(parser: Parser) -> None:
 def check_command(options: Namespace) -> int:
     """Report problems of one profile, of all, or of devices; return 0 if there are none."""
     if options.preflight:
-        from cli.preflight.command import preflight_command
+        from cli.preflight.devices import preflight_command
 
         return preflight_command(options)
     paths = [find_profile(options.profile)] if options.profile else [entry.path for entry in list_profiles()]
     if options.json:
-        found = [_checked(path, options) for path in paths]
-        write(json_text(found, indent=2))
-        return 2 if any(each["problems"] for each in found) else 0
+        found = {path: _problems(path, options)[1:] for path in paths}
+        told = [
+            {"path": str(path), "problems": [*map(asdict, problems)], "warnings": [*map(asdict, warnings)]}
+            for path, (problems, warnings) in found.items()
+        ]
+        write(json_text(told, indent=2))
+        return 2 if any(problems for problems, _warnings in found.values()) else 0
     return max([_check(path, options) for path in paths], default=0)
 
 
-def _load(path: Path, options: Namespace) -> Profile:
-    return load_profile(path, hardware=options.hardware, overrides=options.overrides, domain=options.domain)
-
-
-def _checked(path: Path, options: Namespace) -> dict[str, list[dict[str, object]] | str]:
-    """Return the problems of a profile, for programs."""
-    problems: tuple[ProfileProblem, ...] = ()
-    warnings: tuple[ProfileProblem, ...] = ()
+def _problems(
+    path: Path, options: Namespace
+) -> tuple[Profile | None, Sequence[ProfileProblem], Sequence[ProfileProblem]]:
+    """Return a profile, if it can be loaded, what is wrong with it, and warnings."""
     try:
-        profile = _load(path, options)
+        profile = load_profile(path, hardware=options.hardware, overrides=options.overrides, domain=options.domain)
     except ProfileError as error:
-        problems = error.problems
-    else:
-        problems, warnings = faults_of(profile), profile.warnings
-    return {
-        "path": str(path),
-        "problems": [asdict(problem) for problem in problems],
-        "warnings": [asdict(problem) for problem in warnings],
-    }
+        return None, error.problems, ()
+    return profile, faults_of(profile), profile.warnings
 
 
 def _check(path: Path, options: Namespace) -> int:
     paint = Paint(sys.stdout)
-    try:
-        profile = _load(path, options)
-    except ProfileError as error:
-        for problem in error.problems:
-            write(_line(problem, paint, RED))
-        return error.exit_code
-    faults = faults_of(profile)
-    for problem in faults:
+    profile, problems, warnings = _problems(path, options)
+    for problem in problems:
         write(_line(problem, paint, RED))
-    for problem in profile.warnings:
+    for problem in warnings:
         write(_line(problem, paint, YELLOW, _("warning") + ": "))
-    if faults:
+    if profile is None or problems:
         return ProfileError.exit_code
     count = len(profile.nodes)
     nodes = ngettext("{count} node", "{count} nodes", count).format(count=count)
@@ -126,16 +105,3 @@ def _line(problem: ProfileProblem, paint: Paint, colour: str, kind: str = "") ->
     words = localized(problem.words)
     where = plain(f"{problem.where}: ")
     return paint(where, colour) + kind + words.removeprefix(where)
-
-
-def _as_json(entry: ProfileEntry) -> dict[str, object]:
-    return {
-        "name": entry.name,
-        "path": str(entry.path),
-        "title": dict(entry.title),
-        "about": dict(entry.about),
-        "lesson": entry.lesson,
-        "nodes": list(entry.nodes),
-        "panels": list(entry.panels),
-        "error": entry.error,
-    }

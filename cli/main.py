@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import os
 import sys
+from argparse import Namespace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from cli.commands import COMMANDS, OPEN, handler_of, parser_of, speak, split, wanted_language
@@ -15,9 +17,6 @@ from text.i18n import LANGUAGES, detect, localized, set_language
 from text.output import drop_output, make_streams_safe, say_error
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Sequence
-
     from launcher.client.start import StartingSupervisor
 
 INTERRUPTED = 130

@@ -7,6 +7,7 @@ import contextlib
 import logging
 import os
 import sys
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from cli.commands import command
@@ -67,6 +68,10 @@ def _mcp_options(parser: Parser) -> None:
 @command("mcp", _mcp_options)
 def mcp_command(options: Namespace) -> int:
     """Serve agents until the agent, or a signal, ends it."""
+    if find_spec("mcp") is None:
+        say_error(_("{package} is not installed").format(package="mcp"))
+        say_error(_("pip install {install}").format(install="'deck-robot[agents]'"))
+        return 2
     if options.show_token:
         from agents.http import own_token
 

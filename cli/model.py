@@ -8,9 +8,11 @@ import os
 import shlex
 import socket
 import sys
+from argparse import Namespace
+from collections.abc import Coroutine
 from ipaddress import ip_address
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 from urllib.parse import urlsplit
 
 from brain.faults import ModelError
@@ -18,7 +20,7 @@ from brain.serving.model_file import ModelFile, ServingError, examine
 from brain.serving.server import Order
 from brain.serving.service import ServedAnswer, Service, installed, require_port
 from brain.settings import load, settings_path
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.options import add_language, between, port
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
@@ -26,12 +28,6 @@ from launcher.profile.defaults import shown
 from text.i18n import _, localized
 from text.output import BOLD, RED, YELLOW, Paint, say_error, write
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Coroutine
-
-    from cli.commands import Parser
 
 T = TypeVar("T")
 EVERYWHERE = ("0.0.0.0", "::")
@@ -103,11 +99,10 @@ def _order(options: Namespace) -> Order:
     file = examine(Path(options.file).expanduser())
     eyes = options.eyes and examine(Path(options.eyes).expanduser())
     if not installed():
-        words = say(
-            "llama.cpp is not installed: {python} -m pip install 'xllamacpp>=2026.10'",
-            python=shlex.quote(sys.executable),
+        python = shlex.quote(sys.executable)
+        raise ServingError(
+            say("llama.cpp is not installed: {python} -m pip install 'xllamacpp>=2026.10'", python=python)
         )
-        raise ServingError(words)
     require_port(options.host, options.port)
     _warn_of_little_memory(file, file.size + (eyes.size if eyes else 0))
     return Order(
@@ -125,11 +120,8 @@ def _order(options: Namespace) -> Order:
 def _context(file: ModelFile, wanted: int | None) -> int:
     trained = file.trained_context
     if wanted is not None and trained is not None and wanted > trained:
-        words = say(
-            "{name} was trained for {trained} tokens at once: --context {trained} at most",
-            name=file.name,
-            trained=trained,
-        )
+        words = say("{name} was trained for {trained} tokens at once: --context {trained} at most", name=file.name,
+                    trained=trained)  # fmt: skip
         raise ServingError(words)
     return wanted or min(CONTEXT, trained or CONTEXT)
 
@@ -146,9 +138,8 @@ def _warn_of_little_memory(file: ModelFile, size: int) -> None:
 
 async def _serve(order: Order, *, verbose: bool) -> int:
     over = asyncio.Event()
-    loop = asyncio.get_running_loop()
     for number in ENDING:
-        loop.add_signal_handler(number, over.set)
+        asyncio.get_running_loop().add_signal_handler(number, over.set)
 
     def tell(answered: ServedAnswer) -> None:
         try:
@@ -158,7 +149,7 @@ async def _serve(order: Order, *, verbose: bool) -> int:
             over.set()
 
     write(_("loading {file} ...").format(file=shown(Path(order.path))))
-    async with Service(order, tell, say_error if verbose else _ignore) as service:
+    async with Service(order, tell, say_error if verbose else lambda _line: None) as service:
         address = await _unless(over, service.ready())
         if address is None:
             return 0
@@ -180,10 +171,6 @@ async def _unless(over: asyncio.Event, awaited: Coroutine[None, None, T]) -> T |
         for each in (task, end):
             each.cancel()
         await asyncio.gather(task, end, return_exceptions=True)
-
-
-def _ignore(_line: str) -> None:
-    """Take no notice of what llama.cpp logs."""
 
 
 def _introduce(order: Order, address: str) -> None:

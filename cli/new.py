@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shlex
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
-from cli.commands import command
+from cli.commands import Parser, command
 from course.folder.folder import NewFolder, new_folder, new_node
 from course.lessons.catalog import find_lesson
 from launcher.errors import UsageError
@@ -15,11 +15,6 @@ from text.output import write
 from text.plain import plain
 from text.program import deck_command
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
 
 
 def _new_options(parser: Parser) -> None:
@@ -35,7 +30,6 @@ def _new_options(parser: Parser) -> None:
 
 @command("new", _new_options)
 def new_command(options: Namespace) -> int:
-    """Make the folder, and say what is in it and what comes next."""
     if bool(options.lesson) == bool(options.node):
         raise UsageError(say("write deck new LESSON or deck new --node NAME"))
     made = new_node(options.node) if options.node else new_folder(find_lesson(options.lesson), again=options.again)
@@ -44,7 +38,6 @@ def new_command(options: Namespace) -> int:
 
 
 def tell(made: NewFolder) -> None:
-    """Say what was made."""
     for file in made.files:
         write(_("made {path}").format(path=plain(shown(file))))
     for copy in made.kept:

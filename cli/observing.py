@@ -6,8 +6,9 @@ import math
 import queue
 import sys
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cli.domains import running_domain
 from launcher.errors import UsageError
@@ -15,8 +16,6 @@ from text.output import keep_stdout_to_ourselves, say_error
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from graph.data import GraphUpdate
     from graph.observer.observer import Observer
 
@@ -30,22 +29,17 @@ BEGIN_S = 20.0
 class DomainView:
     """What an observer tells of one domain."""
 
-    def __init__(
-        self,
-        domain: int,
-        discovery: str | tuple[str, ...],
-        observer: Observer,
-        updates: queue.SimpleQueue[GraphUpdate],
-    ) -> None:
-        """`updates`: what the observer tells."""
+    def __init__(self, domain: int, discovery: str | tuple[str, ...], observer: Observer) -> None:
         self.domain = domain
         self.discovery = discovery
         self.observer = observer
-        self._updates = updates
+        self._updates: queue.SimpleQueue[GraphUpdate] = queue.SimpleQueue()
+        self.take = self._updates.put
+        """Takes what the observer tells."""
         self._opened_s = time.monotonic()
         self._joined_s = self._news_s = math.inf
         """When the observer first told anything, and when it last told of something new."""
-        self._size = (0, 0, 0)
+        self._size = (-1, 0, 0)
 
     def listened_s(self) -> float:
         """Return for how long the domain has been listened to; the start does not count."""
@@ -85,41 +79,40 @@ class DomainView:
                 return
             if update.error:
                 raise UsageError(update.error)
-            self._note(update)
+            now_s = time.monotonic()
+            self._joined_s = min(self._joined_s, now_s)
+            if self._size != (size := (len(update.nodes), len(update.topics), len(update.services))):
+                self._size, self._news_s = size, now_s
             yield update
-
-    def _note(self, update: GraphUpdate) -> None:
-        now_s = time.monotonic()
-        self._joined_s = min(self._joined_s, now_s)
-        size = len(update.nodes), len(update.topics), len(update.services)
-        if size != self._size or self._news_s == math.inf:
-            self._size, self._news_s = size, now_s
 
     def refuse_empty(self, update: GraphUpdate) -> None:
         """Raise UsageError if nobody but Deck's own observers is in the domain."""
         from graph.findings.finding import is_deck
 
-        if all(is_deck(node.name) for node in update.nodes):
-            words = (
-                say(
-                    "no node was found in domain {domain} on this machine: start one, choose "
-                    "another with --domain, or look on the network with --discovery subnet",
-                    domain=self.domain,
-                )
-                if self.discovery == "localhost"
-                else say(
-                    "no node was found in domain {domain}: start one, or choose another with --domain",
-                    domain=self.domain,
-                )
+        if not all(is_deck(node.name) for node in update.nodes):
+            return
+        if self.discovery == "localhost":
+            words = say(
+                "no node was found in domain {domain} on this machine: start one, choose "
+                "another with --domain, or look on the network with --discovery subnet",
+                domain=self.domain,
             )
-            raise UsageError(words)
+        else:
+            words = say(
+                "no node was found in domain {domain}: start one, or choose another with --domain", domain=self.domain
+            )
+        raise UsageError(words)
 
 
 @contextmanager
 def domain_view(
-    asked: int | None, wanted: str | None = None, *, follow: Iterable[str] = (), all_topics: bool = False
+    asked: int | None,
+    wanted: str | None = None,
+    **interest: Any,  # noqa: ANN401 - what Interest has
 ) -> Iterator[DomainView]:
     """Observe the domain that was asked for, else that of the running robot, and leave it again.
+
+    `interest`: the fields of `graph.data.Interest`.
 
     Raises:
         UsageError: if robots run in several domains.
@@ -129,12 +122,12 @@ def domain_view(
 
     _name, domain, discovery = running_domain(asked, wanted)
     keep_stdout_to_ourselves()
-    updates: queue.SimpleQueue[GraphUpdate] = queue.SimpleQueue()
     observer = Observer(domain, discovery)
-    observer.want(Interest(followed=frozenset(follow), all_topics=all_topics, period_s=LOOK_S))
-    observer.start(updates.put)
+    view = DomainView(domain, discovery, observer)
+    observer.want(Interest(period_s=LOOK_S, **interest))
+    observer.start(view.take)
     try:
-        yield DomainView(domain, discovery, observer, updates)
+        yield view
     finally:
         observer.stop()
 

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import TYPE_CHECKING
+from argparse import ArgumentParser
+from collections.abc import Callable
 
 from launcher.domain.domain import parse_domain
 from launcher.errors import DomainError
 from text.i18n import LANGUAGES, _, localized
-
-if TYPE_CHECKING:
-    from argparse import ArgumentParser
-    from collections.abc import Callable
 
 MOST_AT_ONCE = 64
 LAST_PORT = 65535
 
 
 def domain(text: str) -> int:
-    """Return a ROS domain, 0 to 232."""
     try:
         return parse_domain(text, "--domain")
     except DomainError as error:
@@ -27,12 +23,15 @@ def domain(text: str) -> int:
         raise argparse.ArgumentTypeError(words) from error
 
 
-def seconds(text: str) -> float:
-    """Return seconds, at least 0."""
+def _number(text: str) -> float:
     try:
-        seconds = float(text)
+        return float(text)
     except ValueError:
-        seconds = math.nan
+        return math.nan
+
+
+def seconds(text: str) -> float:
+    seconds = _number(text)
     if not 0 <= seconds < math.inf:
         raise argparse.ArgumentTypeError(_("{text!r} is not a number of seconds").format(text=text))
     return seconds
@@ -40,10 +39,7 @@ def seconds(text: str) -> float:
 
 def rate(text: str) -> float:
     """Return the speed of a replay, relative to the original, 0.1 to 10."""
-    try:
-        rate = float(text)
-    except ValueError:
-        rate = math.nan
+    rate = _number(text)
     if not 0.1 <= rate <= 10:
         raise argparse.ArgumentTypeError(_("{text!r} is not a rate; expected 0.1 to 10").format(text=text))
     return rate
@@ -54,10 +50,7 @@ def bandwidth(text: str) -> int:
     number = text.lower().removesuffix("k")
     if number in ("off", "0"):
         return 0
-    try:
-        kilobytes = float(number)
-    except ValueError:
-        kilobytes = math.nan
+    kilobytes = _number(number)
     if not 1 <= kilobytes < math.inf:
         words = _("{text!r} is not a bandwidth; expected kB/s from 1 up, such as 40, or off")
         raise argparse.ArgumentTypeError(words.format(text=text))
@@ -65,29 +58,24 @@ def bandwidth(text: str) -> int:
 
 
 def folder(text: str) -> str:
-    """Return the name of a folder, which is not empty."""
     if not text:
         raise argparse.ArgumentTypeError(_("the name of a folder is missing"))
     return text
 
 
 def count(text: str) -> int:
-    """Return a number of lines."""
     if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(_("{text!r} is not a number of lines").format(text=text))
     return int(text)
 
 
 def whole(text: str) -> int:
-    """Return a whole number that is not negative."""
     if not (text.isascii() and text.isdigit()):
         raise argparse.ArgumentTypeError(_("{text!r} is not a whole number").format(text=text))
     return int(text)
 
 
 def between(least: int, most: int) -> Callable[[str], int]:
-    """Return what parses a whole number from `least` to `most`."""
-
     def parse(text: str) -> int:
         number = whole(text)
         if not least <= number <= most:
@@ -105,7 +93,6 @@ at_once = between(1, MOST_AT_ONCE)
 
 
 def add_profile(parser: ArgumentParser) -> None:
-    """Add the name of a profile, which has to be given."""
     parser.add_argument("profile", metavar=_("PROFILE"), help=_("name, lesson number or file: 09-brain"))
 
 
@@ -161,17 +148,14 @@ def add_screen(parser: ArgumentParser) -> None:
 
 
 def add_json(parser: ArgumentParser) -> None:
-    """Add the output for programs."""
     parser.add_argument("--json", action="store_true", help=_("print JSON, for programs"))
 
 
 def add_language(parser: ArgumentParser) -> None:
-    """Add the language."""
     parser.add_argument("--lang", choices=LANGUAGES, help=_("language; by default that of the locale"))
 
 
 def add_running(parser: ArgumentParser) -> None:
-    """Add the name of a running profile, for when there are several."""
     parser.add_argument("name", nargs="?", metavar=_("NAME"), help=_("name of the profile, if several are running"))
 
 

@@ -12,11 +12,14 @@ from __future__ import annotations
 
 import math
 import sys
+import threading
 import time
+from argparse import Namespace
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import beyond_this_machine, running_domain
 from cli.options import add_graph, add_json, folder, seconds
 from graph.bag.errors import BagError
@@ -32,11 +35,6 @@ from text.sentences import say
 from tui.recording.words import complaints, progress, size_words
 
 if TYPE_CHECKING:
-    import threading
-    from argparse import Namespace
-    from collections.abc import Sequence
-
-    from cli.commands import Parser
     from graph.recording.recorder import Recorder, RecordingStatus
 
 TOLD_S = 1.0

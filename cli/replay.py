@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import sys
 import time
+from argparse import Namespace
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph, add_screen, rate, seconds
 from cli.screen import has_terminal
 from graph.bag.errors import BagError, nothing_to_publish
-from graph.bag.listing import bags_in
+from graph.bag.listing import ListedBag, bags_in
 from launcher.errors import UsageError
 from launcher.processes.ending import stop_by_signals
 from launcher.rundir import recordings_path
@@ -31,11 +33,6 @@ from tui.recording.words import BETWEEN, length_words, size_words
 from tui.session.requests import OpenRequest, ReplayRequest
 
 if TYPE_CHECKING:
-    import threading
-    from argparse import Namespace
-
-    from cli.commands import Parser
-    from graph.bag.listing import ListedBag
     from graph.bag.publishing import BagPublisher, PublishingProgress
     from graph.bag.reading import Bag, TopicInBag
 
@@ -69,36 +66,30 @@ def replay_command(options: Namespace) -> int:
         raise UsageError(say("--motion and --domain only work with --publish"))
     if options.bag is None:
         return _list_recordings()
-    bag = _find_recording(options.bag)
-    if options.publish:
-        return _publish_bag(bag, options)
-    _check(bag, whole=not has_terminal())
+    from graph.bag.files import files_of
+
+    path = _find_recording(options.bag)
+    try:
+        if options.publish:
+            return _publish_bag(path, options)
+        if has_terminal():
+            # A fault of its contents is told by the screen itself.
+            files_of(path)
+        else:
+            from graph.bag.reading import open_bag
+
+            with open_bag(path) as bag:
+                for words in filter(None, (*bag.notes, bag.damage)):
+                    say_error(localized(words))
+    except BagError as error:
+        raise UsageError(error.words) from error
     if not has_terminal():
         say_error(_("replay needs a terminal; `deck replay --publish` works without one"))
         return 2
     from tui.live import run_live
 
-    order = ReplayRequest(bag, options.rate, options.loop, options.start)
+    order = ReplayRequest(path, options.rate, options.loop, options.start)
     return run_live(OpenRequest(replay=order, wall=options.wall), options.lang, options.bandwidth)
-
-
-def _check(bag: Path, *, whole: bool) -> None:
-    """Report a fault of the bag before anything else is printed or shown.
-
-    `whole`: check its contents too, which may take a while; the screen does this itself.
-    """
-    from graph.bag.files import files_of
-    from graph.bag.reading import open_bag
-
-    try:
-        if whole:
-            with open_bag(bag) as opened:
-                for words in filter(None, (*opened.notes, opened.damage)):
-                    say_error(localized(words))
-        else:
-            files_of(bag)
-    except BagError as error:
-        raise UsageError(error.words) from error
 
 
 def _list_recordings() -> int:
@@ -158,45 +149,36 @@ def _publish_bag(path: Path, options: Namespace) -> int:
     """Publish until the end or until stopped.
 
     Return 1 if others publish all of it already, or if messages are missing in the bag. Raises
-    UsageError for a bag of which nothing can be published.
+    BagError for a bag of which nothing can be published.
     """
+    from graph.bag.publishing import BagPublisher
     from graph.bag.reading import open_bag
+    from graph.ros import open_ros
 
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     stop = stop_by_signals()
     keep_stdout_to_ourselves()
-    try:
-        with open_bag(path) as bag:
-            return _publish(bag, domain, discovery, stop, options)
-    except BagError as error:
-        raise UsageError(error.words) from error
-
-
-def _publish(
-    bag: Bag, domain: int, discovery: str | tuple[str, ...], stop: threading.Event, options: Namespace
-) -> int:
-    from graph.bag.publishing import BagPublisher
-    from graph.ros import open_ros
-
-    try:
-        ros = open_ros(domain, discovery, "replay")
-    except Exception as error:  # noqa: BLE001 - rclpy may raise anything, or be missing
-        say_error(localized(say("ROS cannot be used: {reason}", reason=error)))
-        return 1
-    try:
+    with open_bag(path) as bag, ExitStack() as closing:
+        try:
+            ros = open_ros(domain, discovery, "replay")
+        except Exception as error:  # noqa: BLE001 - rclpy may raise anything, or be missing
+            say_error(localized(say("ROS cannot be used: {reason}", reason=error)))
+            return 1
+        closing.callback(ros.close)
         publisher = BagPublisher(bag, ros, lambda topic: _refusal(topic, motion=options.motion), STOPPED_BY_ZEROS)
+        told: set[str] = set()
         if not publisher.topics:
-            _tell_left_out(publisher.progress, set())
+            _tell_left_out(publisher.progress, told)
             raise nothing_to_publish(bag.path, bag.messages_count)
         publisher.find_others(stop)
         _begin(bag, publisher, domain)
-        told = _tell_left_out(publisher.progress, set())
+        _tell_left_out(publisher.progress, told)
         if not publisher.topics:
             say_error(_("nothing is left to publish"))
             return 1
 
         def tell(progress: PublishingProgress) -> None:
-            told.update(_tell_left_out(progress, told))
+            _tell_left_out(progress, told)
             write(_words(progress, bag))
 
         publisher.play(stop, tell, rate=options.rate, start_s=options.start, loop=options.loop)
@@ -205,8 +187,6 @@ def _publish(
         _tell(bag.damage)
         write(_("published: {words}").format(words=_words(publisher.progress, bag)))
         return int(bag.is_incomplete or bag.damage is not None)
-    finally:
-        ros.close()
 
 
 def _refusal(topic: TopicInBag, *, motion: bool) -> str | None:
@@ -232,13 +212,13 @@ def _tell(sentence: str | None) -> None:
         write(plain(localized(sentence), 400))
 
 
-def _tell_left_out(progress: PublishingProgress, told: set[str]) -> set[str]:
-    """Say why topics are newly left out; return the names of all topics left out."""
+def _tell_left_out(progress: PublishingProgress, told: set[str]) -> None:
+    """Say why topics are newly left out, and note which."""
     for name, reason in sorted(progress.left_out.items()):
         if name not in told:
             words = _("not published: {topic}: {reason}")
             write(words.format(topic=plain(name), reason=plain(localized(reason), 300)))
-    return set(progress.left_out)
+    told.update(progress.left_out)
 
 
 def _words(progress: PublishingProgress, bag: Bag) -> str:

@@ -13,28 +13,25 @@ JSON has one object per line, distinguished by `event`:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple, TypeAlias
 
-from launcher.status import NodeState, Severity
+from launcher.status import LogLine, NodeState, NodeStatus, SessionInfo, Severity
 from text.i18n import LocalizedFloat, _, localized, ngettext
 from text.output import BOLD, DIM, PREFIX_COLOURS, RED, YELLOW, Paint, json_text, table
 from text.plain import plain
 from tui.session.words import hardware_words
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from launcher.status import LogLine, NodeStatus, SessionInfo
-
-    Write = Callable[[str], None]
-
+Write: TypeAlias = Callable[[str], None]
 COLOURS = {Severity.WARN: YELLOW, Severity.ERROR: RED, Severity.FATAL: RED, Severity.DEBUG: DIM}
 DECK = "deck"
+_OF_SESSION = (
+    *("name", "profile", "title", "lesson", "run_id", "domain", "discovery", "hardware", "supervisor_pid"),
+    "log_dir",
+)
 
 
-@dataclass(frozen=True)
-class Summary:
+class Summary(NamedTuple):
     """The result of a run."""
 
     nodes: Sequence[NodeStatus]
@@ -52,7 +49,6 @@ class Summary:
 
     @property
     def exit_code(self) -> int:
-        """The exit code of `deck run`."""
         return 0 if self.well else 1
 
 
@@ -68,11 +64,9 @@ class TextReport:
 
     def session(self, session: SessionInfo) -> None:
         """Report what was started, and how to stop it."""
-        self.note(
-            _("{name}: domain {domain}, {hardware} hardware; Ctrl-C stops it").format(
-                name=session.name, domain=session.domain, hardware=hardware_words(session.hardware)
-            )
-        )
+        words = _("{name}: domain {domain}, {hardware} hardware; Ctrl-C stops it")
+        hardware = hardware_words(session.hardware)
+        self.note(words.format(name=session.name, domain=session.domain, hardware=hardware))
 
     def status(self, node: NodeStatus) -> None:
         """Report states that the log does not show."""
@@ -103,7 +97,7 @@ class TextReport:
         rows = [
             (
                 node.name,
-                _result(node) if healthy[node.name] else _("FAILED"),
+                (_("runs") if node.unasked else _("healthy")) if healthy[node.name] else _("FAILED"),
                 _(node.state.value),
                 str(node.restarts),
                 localized(node.why),
@@ -134,11 +128,6 @@ class TextReport:
         self._write(f"{self._paint(prefix, colour)} {text}")
 
 
-def _result(node: NodeStatus) -> str:
-    """Return the word for a node that is not known to have failed."""
-    return _("runs") if node.unasked else _("healthy")
-
-
 class JsonReport:
     """One JSON object per line, as the module describes."""
 
@@ -146,34 +135,14 @@ class JsonReport:
         self._write = write
 
     def session(self, session: SessionInfo) -> None:
-        self._object(
-            "session",
-            name=session.name,
-            profile=session.profile,
-            title=session.title,
-            lesson=session.lesson,
-            run_id=session.run_id,
-            domain=session.domain,
-            discovery=session.discovery,
-            hardware=session.hardware,
-            supervisor_pid=session.supervisor_pid,
-            log_dir=session.log_dir,
-        )
+        self._object("session", **fields_of(session, *_OF_SESSION))
 
     def status(self, node: NodeStatus) -> None:
         self._object("status", **status_fields(node))
 
     def log(self, line: LogLine) -> None:
-        self._object(
-            "log",
-            node=line.node,
-            seq=line.seq,
-            time=line.time_s,
-            severity=line.severity.value,
-            text=line.text,
-            logger=line.logger,
-            source=line.source,
-        )
+        rest = fields_of(line, "text", "logger", "source")
+        self._object("log", node=line.node, seq=line.seq, time=line.time_s, severity=line.severity.value, **rest)
 
     def skipped(self, node: str, lines: int) -> None:
         self._object("skipped", node=node, lines=lines)
@@ -198,17 +167,14 @@ class JsonReport:
         self._write(json_text({"event": event, **fields}))
 
 
+def fields_of(told: object, *names: str) -> dict[str, object]:
+    """Return some of its fields, as JSON has them."""
+    return {name: getattr(told, name) for name in names}
+
+
 def status_fields(node: NodeStatus) -> dict[str, object]:
-    """Return the JSON fields of a node."""
-    return {
-        "node": node.name,
-        "state": node.state.value,
-        "detail": node.why,
-        "pid": node.pid,
-        "restarts": node.restarts,
-        "exit_code": node.exit_code,
-        "signal": node.signal,
-    }
+    first = {"node": node.name, "state": node.state.value, "detail": node.why}
+    return {**first, **fields_of(node, "pid", "restarts", "exit_code", "signal")}
 
 
 Report: TypeAlias = TextReport | JsonReport

@@ -5,34 +5,27 @@ from __future__ import annotations
 import asyncio
 import sys
 import time
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from cli.commands import command
-from cli.domains import in_own_domain, stop_is_kept, stop_words
+from cli.commands import Parser, command
+from cli.domains import profile_to_run, stop_is_kept, stop_words
 from cli.health import over, settled, well
 from cli.line_writer import LineWriter
 from cli.options import add_json, add_profile, add_profile_options, seconds
-from cli.report import JsonReport, Summary, TextReport
+from cli.report import JsonReport, Report, Summary, TextReport
 from launcher.errors import SessionError
-from launcher.events import ClosedEvent, LogEvent, StatusEvent
+from launcher.events import ClosedEvent, Event, LogEvent, StatusEvent
 from launcher.processes.ending import ENDING
 from launcher.processes.interrupts import run
-from launcher.profile.catalog import find_profile
-from launcher.profile.load import load_profile
-from launcher.serial_ports import serial_ports
+from launcher.profile.model import Profile
+from launcher.status import NodeStatus
 from text.i18n import _, language, localized, ngettext
 from text.output import Paint, drop_output, say_error
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-
-    from cli.commands import Parser
-    from cli.report import Report
     from launcher.client.client import SupervisorClient
     from launcher.client.start import StartingSupervisor
-    from launcher.events import Event
-    from launcher.profile.load import Profile
-    from launcher.status import NodeStatus
 
 INTERRUPTED = 130
 PAST_LINES = 1000
@@ -55,14 +48,7 @@ def _run_options(parser: Parser) -> None:
 @command("run", _run_options)
 def run_command(options: Namespace) -> int:
     """Start a profile, report events, stop it; return 0 if every node stayed healthy."""
-    profile = load_profile(
-        find_profile(options.profile),
-        hardware=options.hardware,
-        overrides=options.overrides,
-        domain=options.domain,
-        ports=serial_ports,
-    )
-    profile = in_own_domain(profile)
+    profile = profile_to_run(options)
     if stop_is_kept(profile.domain):
         say_error(stop_words(profile.domain))
     return run(_main(profile, options))
@@ -124,7 +110,6 @@ class Run:
         self._asked_to_stop = 0
 
     async def to_the_end(self) -> int:
-        """Run it; return the exit code."""
         began = time.monotonic()
         try:
             client = await self._start()

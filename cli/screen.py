@@ -1,25 +1,21 @@
-"""`deck` and `deck attach`: the screen, if there is a terminal to draw it on."""
+"""`deck`, `deck attach` and `deck watch`: the screen, if there is a terminal to draw it on."""
 
 from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING
+from argparse import Namespace
+from pathlib import Path
 
-from cli.commands import COMMANDS, HELP, OPEN, command
-from cli.options import add_running, add_screen
+from cli.commands import COMMANDS, HELP, OPEN, Parser, command
+from cli.options import add_graph, add_running, add_screen
+from launcher.domain.domain import choose_domain
 from launcher.errors import ProfileNotFoundError, UsageError
 from launcher.profile.catalog import find_profile
 from text.i18n import _
 from text.output import say_error, write
 from text.sentences import say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from pathlib import Path
-
-    from cli.commands import Parser
 
 
 @command(OPEN, lambda _parser: None)
@@ -70,7 +66,6 @@ def _attach_options(parser: Parser) -> None:
 
 @command("attach", _attach_options)
 def attach_command(options: Namespace) -> int:
-    """Show the screen of a profile that is running in the background."""
     if not has_terminal():
         say_error(_("attach needs a terminal; `deck ps` and `deck logs NODE -f` work without one"))
         return 2
@@ -83,6 +78,25 @@ def attach_command(options: Namespace) -> int:
     return run_screen(
         None, lang=options.lang, attach=options.name or session.name, bandwidth=options.bandwidth, wall=options.wall
     )
+
+
+def _watch_options(parser: Parser) -> None:
+    add_graph(parser, _("ROS domain; by default ROS_DOMAIN_ID, else one of your own"))
+    add_screen(parser)
+    parser.epilog = _("Deck starts and stops nothing here.")
+
+
+@command("watch", _watch_options)
+def watch_command(options: Namespace) -> int:
+    domain = choose_domain(options.domain, None, os.environ)
+    if not has_terminal():
+        say_error(_("watch needs a terminal; `deck record` works without one"))
+        return 2
+    from tui.live import run_live
+    from tui.session.requests import OpenRequest, WatchRequest
+
+    order = OpenRequest(watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall)
+    return run_live(order, options.lang, options.bandwidth)
 
 
 def has_terminal() -> bool:

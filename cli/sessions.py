@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from cli.domains import stop_is_kept
 from cli.health import well
-from cli.report import status_fields
+from cli.report import fields_of, status_fields
+from launcher.status import NodeStatus, SessionInfo
 from text.i18n import _, decimal, localized, pick
 from text.output import BOLD, DIM, RED, Paint, table, write
 from text.plain import plain
 from tui.session.words import hardware_words
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
-
-    from launcher.status import NodeStatus, SessionInfo
 
 
 def show(session: SessionInfo, nodes: Sequence[NodeStatus], optional: Collection[str] = ()) -> None:
@@ -73,26 +69,12 @@ def silent_as_json(session: SessionInfo, pids: Mapping[str, int]) -> dict[str, o
 
 
 def as_json(session: SessionInfo, nodes: Iterable[NodeStatus]) -> dict[str, object]:
-    """Return a session in the form of `deck ps --json`."""
+    first = fields_of(session, "name", "run_id", "profile", "domain", "hardware", "foreground", "supervisor_pid")
+    figures = ("uptime_s", "cpu_percent", "memory_bytes")
     return {
-        "name": session.name,
-        "run_id": session.run_id,
-        "profile": session.profile,
-        "domain": session.domain,
-        "hardware": session.hardware,
-        "foreground": session.foreground,
-        "supervisor_pid": session.supervisor_pid,
+        **first,
         "supervisor_answers": True,
         "log_dir": session.log_dir,
         "emergency_stop": stop_is_kept(session.domain),
-        "nodes": [
-            {
-                **status_fields(node),
-                "healthy": well(node),
-                "uptime_s": node.uptime_s,
-                "cpu_percent": node.cpu_percent,
-                "memory_bytes": node.memory_bytes,
-            }
-            for node in nodes
-        ],
+        "nodes": [{**status_fields(node), "healthy": well(node), **fields_of(node, *figures)} for node in nodes],
     }

@@ -7,27 +7,22 @@ the middleware hangs. Whether it is obeyed the nodes say by ROS alone, and only 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import stop_is_kept, stop_words
 from cli.observing import domain_view
 from launcher.client.running import find_running, running_records
 from launcher.client.stop_road import StopRoad
 from launcher.errors import LauncherError, NotRunningError
+from launcher.runs.record import RunRecord
 from robot.topics import EMERGENCY_STATE
 from text.i18n import _, localized
 from text.output import say_error, write
 from text.plain import plain
 from text.sentences import reason_of
 from tui.emergency.nodes import NodeStop, present, reported_stops
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Mapping, Sequence
-
-    from cli.commands import Parser
-    from launcher.runs.record import RunRecord
 
 CARRIED_WITHIN_S = 3.0
 CONFIRMED_WITHIN_S = 30.0
@@ -112,7 +107,7 @@ def _reports(domain: int) -> Mapping[str, NodeStop]:
     nodes: dict[str, NodeStop] = {}
     changed_s = time.monotonic()
     last_s, deadline_s = changed_s + CONFIRMED_WITHIN_S, 0.0
-    with domain_view(domain, follow=(EMERGENCY_STATE,)) as view:
+    with domain_view(domain, followed=frozenset({EMERGENCY_STATE})) as view:
         while time.monotonic() < (deadline_s or last_s):
             for update in view.updates():
                 deadline_s = deadline_s or time.monotonic() + FOUND_WITHIN_S

@@ -12,10 +12,13 @@ import os
 import sys
 import threading
 import webbrowser
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeVar
+from typing import TYPE_CHECKING, NoReturn
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.domains import running_domain
 from cli.options import add_graph, port
 from launcher.errors import LauncherError, UsageError
@@ -26,26 +29,11 @@ from text.sentences import reason_of
 from view.place import ViewError, has_window, need_foxglove, rerun_program, rviz_program, ssh_command
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Callable
-
-    from cli.commands import Parser
     from view.sharing import Sharing
     from view.showing import Showing
 
-T = TypeVar("T")
-
 RVIZ = Path("rviz") / "robot.rviz"
 """Among the profiles."""
-
-
-class ViewOpened(NamedTuple):
-    """What is open."""
-
-    kind: str
-    url: str
-    ports: tuple[int, ...]
-    domain: int
 
 
 def _view_options(parser: Parser) -> None:
@@ -74,23 +62,19 @@ def _add_common(parser: Parser) -> None:
 
 @command("view", _view_options)
 def view_command(options: Namespace) -> int:
-    """Show the robot in 3D until the viewer is closed."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     if options.rviz:
         _rviz(domain, discovery)
     from view.showing import Showing
 
-    _have(rerun_program)
     window = has_window(os.environ) and not options.web
     compact = bool(os.environ.get("SSH_CONNECTION"))
-    stop = _stopping(options)
-    try:
+    with _viewer_faults():
+        rerun_program()
+        stop = _stopping(options)
         showing = Showing(domain, discovery, window=window, port=options.port, compact=compact)
-    except ViewError as error:
-        raise UsageError(reason_of(error)) from error
     with showing:
-        kind = "window" if window else "page"
-        _tell(ViewOpened(kind, showing.url, showing.ports, domain), as_json=options.json)
+        _tell("window" if window else "page", showing.url, showing.ports, domain, as_json=options.json)
         if showing.url and options.open and has_window(os.environ):
             webbrowser.open(showing.url)
         return _wait(showing, stop)
@@ -107,25 +91,23 @@ def _foxglove_options(parser: Parser) -> None:
 
 @command("foxglove", _foxglove_options)
 def foxglove_command(options: Namespace) -> int:
-    """Serve what is published to Foxglove until it is stopped."""
     _name, domain, discovery = running_domain(options.domain, options.discovery)
     from view.sharing import Sharing
 
-    _have(need_foxglove)
-    stop = _stopping(options)
-    try:
+    with _viewer_faults():
+        need_foxglove()
+        stop = _stopping(options)
         sharing = Sharing(domain, discovery, options.port)
-    except ViewError as error:
-        raise UsageError(reason_of(error)) from error
     with sharing:
-        _tell(ViewOpened("foxglove", sharing.url, (sharing.port,), domain), as_json=options.json)
+        _tell("foxglove", sharing.url, (sharing.port,), domain, as_json=options.json)
         return _wait(sharing, stop)
 
 
-def _have(find: Callable[[], T]) -> T:
-    """Return what is installed. Raises UsageError if it is not."""
+@contextmanager
+def _viewer_faults() -> Iterator[None]:
+    """Raise UsageError for what is not installed, or cannot be opened."""
     try:
-        return find()
+        yield
     except ViewError as error:
         raise UsageError(reason_of(error)) from error
 
@@ -154,37 +136,28 @@ def _until_input_ends(stop: threading.Event) -> None:
     stop.set()
 
 
-def _tell(opened: ViewOpened, *, as_json: bool) -> None:
-    ssh = ssh_command(opened.ports, os.environ)
+def _tell(kind: str, url: str, ports: tuple[int, ...], domain: int, *, as_json: bool) -> None:
+    ssh = ssh_command(ports, os.environ)
     if as_json:
-        told = {"event": "view", **opened._asdict(), "ssh": ssh}
-        write(json_text(told))
-        sys.stdout.flush()
-        return
-    for line in _lines(opened, ssh):
-        write(line)
+        write(json_text({"event": "view", "kind": kind, "url": url, "ports": ports, "domain": domain, "ssh": ssh}))
+        ssh = ""
+    elif kind == "window":
+        write(_("domain {domain} in a window of Rerun; close it or press Ctrl-C").format(domain=domain))
+        ssh = ""
+    elif kind == "foxglove":
+        write(_("domain {domain} for Foxglove: {url}; Ctrl-C ends it").format(domain=domain, url=url))
+    else:
+        write(_("domain {domain} in a browser: {url}; Ctrl-C ends it").format(domain=domain, url=url))
+    if ssh:
+        write(_("first, on the machine in front of you: {command}").format(command=ssh))
     sys.stdout.flush()
 
 
-def _lines(opened: ViewOpened, ssh: str) -> list[str]:
-    domain = opened.domain
-    if opened.kind == "window":
-        words = _("domain {domain} in a window of Rerun; close it or press Ctrl-C")
-        return [words.format(domain=domain)]
-    if opened.kind == "foxglove":
-        words = _("domain {domain} for Foxglove: {url}; Ctrl-C ends it")
-    else:
-        words = _("domain {domain} in a browser: {url}; Ctrl-C ends it")
-    lines = [words.format(domain=domain, url=opened.url)]
-    if ssh:
-        lines += [_("first, on the machine in front of you: {command}").format(command=ssh)]
-    return lines
-
-
 def _rviz(domain: int, discovery: str | tuple[str, ...]) -> NoReturn:
-    from cli.shell.command import environment_in
+    from cli.shell import environment_in
     from launcher.profile.defaults import SHIPPED
 
-    program = _have(rviz_program)
+    with _viewer_faults():
+        program = rviz_program()
     sys.stdout.flush()
     os.execve(program, [program, "-d", str(SHIPPED / RVIZ)], environment_in(domain, discovery))

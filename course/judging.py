@@ -4,6 +4,9 @@ judge = await RemoteJudge.start(lesson.path, client.session.run_id, passed={"top
 judge.judge("rate")
 async for event in judge.events(): ...
 await judge.close()
+
+Lines of JSON go between the processes. To the judge: `start`, once; then `judge`, as often as wished, and `quit`.
+From it: `values`, once it is at work, `step` for whatever changes, and `end`, the last one.
 """
 
 from __future__ import annotations
@@ -12,21 +15,16 @@ import asyncio
 import contextlib
 import os
 import sys
+from collections.abc import AsyncGenerator, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import course
-from course.results import MOST_BYTES, StepResult, unpack_step
-from launcher.wire import encode
+from course.results import MOST_BYTES, StepResult
+from launcher.wire import Sentence, encode, pack, unpack
 from text.nested import read_json
-from text.packing import unpack_text
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Iterable, Mapping
-
-    from launcher.profile.steps.expressions import Drawn
 
 CLOSED_WITHIN_S = 3.0
 
@@ -36,18 +34,24 @@ class ValuesDrawn:
     """The judge is at work, with these values."""
 
     seed: int
-    values: Mapping[str, Drawn] = field(default_factory=dict)
+    values: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class JudgeEnded:
     """The judge has ended; nothing more comes."""
 
-    reason: str = ""
+    reason: Sentence = ""
     """Why, in a sentence; empty if it was asked to."""
 
 
 JudgeEvent: TypeAlias = ValuesDrawn | StepResult | JudgeEnded
+_KINDS: dict[str, type[JudgeEvent]] = {"values": ValuesDrawn, "step": StepResult, "end": JudgeEnded}
+
+
+def packed(event: JudgeEvent) -> bytes:
+    kind = next(kind for kind, made in _KINDS.items() if isinstance(event, made))
+    return encode({"event": kind, **pack(event)})
 
 
 class RemoteJudge:
@@ -55,6 +59,9 @@ class RemoteJudge:
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
+        assert process.stdin is not None
+        assert process.stdout is not None
+        self._requests, self._said = process.stdin, process.stdout
 
     @classmethod
     async def start(cls, lesson: Path, run: str, *, seed: int = 0, passed: Iterable[str] = ()) -> RemoteJudge:
@@ -88,10 +95,10 @@ class RemoteJudge:
 
     async def events(self) -> AsyncGenerator[JudgeEvent, None]:
         """Yield what the judge says, `JudgeEnded` last; for a single consumer."""
-        assert self._process.stdout is not None
-        async for line in self._process.stdout:
+        async for line in self._said:
             try:
-                event = _unpacked(read_json(line))
+                message = read_json(line)
+                event = unpack(_KINDS[message.pop("event")], message)
             except (ValueError, KeyError, TypeError):
                 break
             yield event
@@ -102,8 +109,7 @@ class RemoteJudge:
     async def close(self) -> None:
         """End it; return when it has ended."""
         self._ask(op="quit")
-        if self._process.stdin is not None:
-            self._process.stdin.close()
+        self._requests.close()
         try:
             await asyncio.wait_for(self._process.wait(), CLOSED_WITHIN_S)
         except asyncio.TimeoutError:
@@ -112,13 +118,5 @@ class RemoteJudge:
             await self._process.wait()
 
     def _ask(self, **request: object) -> None:
-        if self._process.stdin is not None and not self._process.stdin.is_closing():
-            self._process.stdin.write(encode(request))
-
-
-def _unpacked(message: Mapping[str, Any]) -> JudgeEvent:
-    if message["event"] == "values":
-        return ValuesDrawn(message["seed"], message["values"])
-    if message["event"] == "step":
-        return unpack_step(message["step"])
-    return JudgeEnded(unpack_text(message["reason"]))
+        if not self._requests.is_closing():
+            self._requests.write(encode(request))

@@ -73,7 +73,6 @@ class Progress:
         return self.lessons.get(lesson, {}).get(step, StepProgress())
 
     def passed(self, lesson: str) -> frozenset[str]:
-        """Return the steps of a lesson that have passed."""
         return frozenset(name for name, step in self.lessons.get(lesson, {}).items() if step.passed)
 
     def held(self, lesson: str, files: str) -> frozenset[str]:
@@ -81,7 +80,6 @@ class Progress:
         return frozenset(name for name in self.passed(lesson) if self.step(lesson, name).files == files)
 
     def points(self, lesson: str, steps: Iterable[str]) -> int:
-        """Return the points earned by these steps of a lesson."""
         return sum(self.step(lesson, step).points for step in steps)
 
     def with_step(self, lesson: str, step: str, changes: StepChanges) -> Progress:

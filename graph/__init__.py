@@ -2,9 +2,8 @@
 
 Other rooms may import `data` (the plain data itself), `observer` and `replay` (its sources),
 `recording`, and those parts of `bag`, `calls`, `messages`, `pictures` and `publishing` that their
-own docstrings name; `housekeeping` and `qos_compatibility`, which are plain too; `ros` to open a
-node, and `participants` to know whether it sees all. ROS is loaded by opening an observer, a
-recorder or a node, not by importing them.
+own docstrings name; `housekeeping` and `qos`, which are plain too; and `ros` to open a
+node. ROS is loaded by opening an observer, a recorder or a node, not by importing them.
 """
 
 import logging

@@ -132,19 +132,12 @@ class TopicRow:
     """The topic that its pictures are taken from, if that is another one."""
     trouble: Trouble | None = None
     detail: str = ""
-    """The trouble in English words: which endpoints are incompatible, which type is missing. It may
-    also be set without a trouble, as a remark: peers that disagree about the type."""
-    facts: Mapping[str, str] = field(default_factory=dict)
-    """The facts in `detail`, to say it in another language.
-
-    QOS_MISMATCH: `policy` of the first pair (as in `graph.qos_compatibility.Mismatch`),
-    its `publisher`, `subscriber` (nodes), `offered`, `requested`; `more`, the number of further
-    pairs, if there are any. UNKNOWN_TYPE: `type`, `package`, `reason`, and for a
-    missing package its names for `pip` (if PyPI has it), `apt` and `pixi`. QUIET: `seconds`.
-    NO_PUBLISHER: none.
-    Both in a replay: `recorded`.
-    A remark: `types`, and in `shown` the one that is shown.
-    """
+    """What is wrong and what to do, where that takes more than the trouble itself; without one, a remark: peers that
+    disagree about the type. Translatable words."""
+    recorded: bool = False
+    """Whether it is of a recording, which has no node to look at."""
+    raw_from_afar: bool = False
+    """Whether its raw pictures come over a network, so that silence may be loss."""
     published_by: tuple[EndpointInfo, ...] = ()
     subscribed_by: tuple[EndpointInfo, ...] = ()
     """Neither contains Deck's own endpoints."""

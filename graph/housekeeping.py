@@ -7,18 +7,9 @@ from text.i18n import N_
 TOPICS = frozenset({"/rosout", "/parameter_events", "/clock"})
 SERVICES = frozenset(
     {
-        "describe_parameters",
-        "get_parameter_types",
-        "get_parameters",
-        "get_type_description",
-        "list_parameters",
-        "set_parameters",
-        "set_parameters_atomically",
-        "get_logger_levels",
-        "set_logger_levels",
-        "get_available_states",
-        "get_available_transitions",
-        "get_transition_graph",
+        *("describe_parameters", "get_parameter_types", "get_parameters", "get_type_description"),
+        *("list_parameters", "set_parameters", "set_parameters_atomically", "get_logger_levels"),
+        *("set_logger_levels", "get_available_states", "get_available_transitions", "get_transition_graph"),
     }
 )
 """Last part of the names of services that rclpy and rclcpp give every node, or every one with a

@@ -7,7 +7,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from graph.memory import keep_room_for_large_messages
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from rclpy.context import Context
     from rclpy.node import Node
+    from rclpy.qos import QoSProfile
+    from rclpy.subscription import Subscription
 
 NAME_PREFIX = "_deck_"
 """The underscore keeps it out of `ros2 node list`."""
@@ -106,6 +108,33 @@ def open_ros(domain: int, discovery: str | tuple[str, ...], role: str = "observe
             parameter_overrides=[silent],
         )
     return Ros(context, node, node.get_fully_qualified_name())
+
+
+def subscribe(node: Node, kind: type[Any], topic: str, qos: QoSProfile | int, *, raw: bool = False) -> Subscription:
+    """Subscribe for whoever polls the queue: no executor ever spins a node of Deck's. Raises what rclpy raises."""
+    from rclpy.event_handler import SubscriptionEventCallbacks
+
+    quiet = SubscriptionEventCallbacks(use_default_callbacks=False)
+    # rclpy insists on a callback.
+    return node.create_subscription(kind, topic, lambda _message: None, qos, event_callbacks=quiet, raw=raw)
+
+
+def taken(subscription: Subscription, most: int) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Yield what is in the queue with what is known of it, `most` at most: a publisher may be faster."""
+    handle: Any = subscription.handle
+    with handle:
+        for _ in range(most):
+            found = handle.take_message(subscription.msg_type, subscription.raw)
+            if found is None:
+                return
+            yield found
+
+
+def unsubscribe(node: Node, subscription: Subscription) -> None:
+    """End a subscription, and forget it: rclpy keeps a reference for an executor that does not exist here."""
+    node.destroy_subscription(subscription)
+    entities = node.default_callback_group.entities
+    entities.difference_update([each for each in entities if each() is None])
 
 
 def _discovery(discovery: str | tuple[str, ...]) -> dict[str, str | None]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from launcher.parts import Part, RosName, key
 from launcher.wire import Sentence
 
 AUDIT_FILE = "agents.jsonl"
@@ -20,18 +21,18 @@ ASKED_FOR_S = 30.0
 
 
 @dataclass(frozen=True)
-class AgentRules:
-    """What a profile permits agents, whatever a person allows."""
+class AgentRules(Part):
+    """What agents that speak to `deck mcp` may do, whatever a person allows them."""
 
-    max_speed_m_s: float = 0.2
-    max_distance_m: float = 1.0
-    """Of one proposal."""
-    max_total_m: float = 5.0
-    """Of all that is driven within `ALLOWED_FOR_S` without a question."""
-    publish: tuple[str, ...] = ()
-    """Topics that agents may publish on; never one that moves the robot."""
-    call: tuple[str, ...] = ()
-    """Services that agents may call."""
+    max_speed_m_s: float = key(0.2, "Fastest speed of a proposal, m/s.", ge=0, le=10)
+    max_distance_m: float = key(1.0, "Longest way of one proposal, m.", ge=0, le=100)
+    max_total_m: float = key(
+        5.0, "Longest way within five minutes of all that nobody was asked about, m.", ge=0, le=1000
+    )
+    publish: tuple[RosName, ...] = key(
+        (), "Topics that agents may publish on; one that moves the robot stays refused.", strict=False
+    )
+    call: tuple[RosName, ...] = key((), "Services that agents may call.", strict=False)
 
 
 DEFAULT_RULES = AgentRules()

@@ -122,22 +122,11 @@ class DomainTakenError(UsageError):
         self.sessions = tuple(sessions)
         self.free = free
         self.can_share = can_share
-        first, more = sessions[0], len(sessions) - 1
+        values: dict[str, object] = {"domain": domain, "first": sessions[0], "more": len(sessions) - 1, "free": free}
         super().__init__(
-            say(
-                "in domain {domain} there is already {first} (and {more} more); `--domain {free}` is free",
-                domain=domain,
-                first=first,
-                more=more,
-                free=free,
-            )
-            if more
-            else say(
-                "in domain {domain} there is already {first}; `--domain {free}` is free",
-                domain=domain,
-                first=first,
-                free=free,
-            )
+            say("in domain {domain} there is already {first} (and {more} more); `--domain {free}` is free", **values)
+            if len(sessions) > 1
+            else say("in domain {domain} there is already {first}; `--domain {free}` is free", **values)
         )
 
 
@@ -201,27 +190,21 @@ class AlreadyRunningError(SessionError):
         """
         self.session = session
         self.free = free
-        values: dict[str, object] = {
-            "name": session.name,
-            "domain": session.domain,
-            "pid": session.supervisor_pid,
-            "down": down,
-            "free": free,
-        }
-        if run_dir:
-            words = say(
+        values: dict[str, object] = {"name": session.name, "domain": session.domain, "pid": session.supervisor_pid}
+        values |= {"run_dir": run_dir, "down": down, "free": free}
+        super().__init__(
+            say(
                 "{name} is already running in domain {domain} (pid {pid}, run directory "
                 "{run_dir}); `{down}` stops it, `--domain {free}` starts another beside it",
-                run_dir=run_dir,
                 **values,
             )
-        else:
-            words = say(
+            if run_dir
+            else say(
                 "{name} is already running in domain {domain} (pid {pid}); `deck attach` shows "
                 "it, `{down}` stops it, `--domain {free}` starts another beside it",
                 **values,
             )
-        super().__init__(words)
+        )
 
 
 class StartError(SessionError):

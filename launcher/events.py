@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 from launcher.consent import Agents
-from launcher.status import NodeStatus, SentLine, SessionInfo, Stray
+from launcher.status import LogLine, NodeStatus, SessionInfo, Stray
 from launcher.wire import VERSION, Sentence, pack, unpack
 
 
@@ -35,7 +35,7 @@ class StatusEvent:
 class LogEvent:
     """A batch of lines, bounded for each node."""
 
-    lines: tuple[SentLine, ...]
+    lines: tuple[LogLine, ...]
     skipped: Mapping[str, int] = field(default_factory=dict)
     """Node to the number of its lines that this batch leaves out; the log file has them all."""
 
@@ -67,23 +67,16 @@ class ClosedEvent:
 
 
 Event: TypeAlias = StatusEvent | LogEvent | StraysEvent | AgentsEvent | UnguardedEvent | ClosedEvent
-_KINDS: dict[str, type[Event]] = {
-    "status": StatusEvent,
-    "log": LogEvent,
-    "strays": StraysEvent,
-    "agents": AgentsEvent,
-    "unguarded": UnguardedEvent,
-    "closed": ClosedEvent,
-}
+_KINDS: dict[str, type[Event]] = {kind.__name__.removesuffix("Event").lower(): kind for kind in get_args(Event)}
 
 
 def pack_event(event: Event) -> dict[str, Any]:
     """Return the message that tells an event."""
-    name = next(name for name, kind in _KINDS.items() if type(event) is kind)
-    return {"event": name, **pack(event)}
+    return {"event": type(event).__name__.removesuffix("Event").lower(), **pack(event)}
 
 
 def unpack_event(message: Mapping[str, Any]) -> Event | None:
     """Return the event of a message; None if it tells none that is known. Raises ValueError."""
     kind = _KINDS.get(message.get("event", ""))
-    return None if kind is None else unpack(kind, message)
+    found: Event | None = None if kind is None else unpack(kind, message)
+    return found

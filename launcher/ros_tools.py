@@ -11,11 +11,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 PREFIX = Path(__file__).resolve().with_name("prefix")
 COMMANDS = PREFIX / "bin"

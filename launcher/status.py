@@ -9,10 +9,10 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Annotated, Any
+from typing import Any
 
 from launcher.consent import DEFAULT_RULES, AgentRules
-from launcher.wire import Sent, Sentence
+from launcher.wire import Sentence
 from text.packing import pack_text, unpack_text
 from text.sentences import Words, say
 
@@ -68,6 +68,7 @@ class Severity(str, Enum):
         return _RANKS[self]
 
 
+_BY_RANK = tuple(Severity)
 _RANKS = {severity: rank for rank, severity in enumerate(Severity)}
 
 
@@ -193,25 +194,18 @@ class LogLine:
     """`stdout`, `stderr`, `deck` for the supervisor's own lines about the node, or `agent` for what
     is said about agents."""
 
+    def packed(self) -> list[Any]:
+        """Return it as JSON, in a short form: many are sent, and kept."""
+        text = pack_text(self.text) if isinstance(self.text, Words) else self.text
+        return [self.node, self.seq, self.time_s, self.severity.rank, text, self.logger, self.source]
 
-def pack_line(line: LogLine) -> list[Any]:
-    """Return a log line as JSON, in a short form: many are sent, and kept."""
-    text = pack_text(line.text) if isinstance(line.text, Words) else line.text
-    return [line.node, line.seq, line.time_s, line.severity.rank, text, line.logger, line.source]
-
-
-_BY_RANK = {severity.rank: severity for severity in Severity}
-
-
-def unpack_line(fields: list[Any]) -> LogLine:
-    """Return the log line that `pack_line` was given."""
-    node, seq, time_s, rank, text, logger, source = fields
-    # Thousands of lines are kept, and these are the same in most of them.
-    node, logger, source = map(sys.intern, (node, logger, source))
-    return LogLine(node, seq, time_s, _BY_RANK[rank], unpack_text(text), logger, source)
-
-
-SentLine = Annotated[LogLine, Sent(pack_line, unpack_line)]
+    @classmethod
+    def unpacked(cls, fields: list[Any]) -> LogLine:
+        """Return the line that was packed."""
+        node, seq, time_s, rank, text, logger, source = fields
+        # Thousands of lines are kept, and these are the same in most of them.
+        node, logger, source = map(sys.intern, (node, logger, source))
+        return cls(node, seq, time_s, _BY_RANK[rank], unpack_text(text), logger, source)
 
 
 @dataclass(frozen=True)

@@ -33,20 +33,28 @@ PACKAGES: Final = {
 }
 """Packages that tutorials run and that are not here, and where Deck does the same."""
 
+_ALIKE = "`ros2 {} list -t` names all of them with their types, as does the Graph tab."
 VERBS: Final = {
-    ("action", "find"): "The Graph tab lists actions by type; `ros2 action list -t` too.",
+    ("action", "find"): _ALIKE.format("action"),
     ("bag", "convert"): "Deck reads and plays bags of either kind: mcap and sqlite3.",
     ("bag", "reindex"): "A bag that was cut short is read as far as it goes; `deck replay` too.",
     ("bag", "burst"): "Replay in Deck steps message by message: `deck replay`.",
-    ("interface", "package"): "`ros2 interface list` names all of them, with their packages.",
-    ("interface", "packages"): "`ros2 interface list` names all of them, with their packages.",
+    ("interface", "list"): "The Graph tab finds types by any part of their names.",
+    ("interface", "package"): "The Graph tab finds types by any part of their names.",
+    ("interface", "packages"): "The Graph tab finds types by any part of their names.",
     ("interface", "proto"): "The Topics and Graph tabs fill in a form; `ros2 interface show` has the fields.",
+    ("lifecycle", "list"): "`J` in the Graph tab offers the transitions that are possible now.",
+    ("lifecycle", "nodes"): "The Graph tab shows the state of each node that has a lifecycle.",
     ("param", "delete"): "A parameter is undeclared by its node alone; `ros2 param set` changes it.",
     ("param", "load"): "The Graph tab loads a file; `ros2 run` takes --ros-args --params-file FILE.",
-    ("pkg", "xml"): "It is the file package.xml in the folder that `ros2 pkg prefix --share` names.",
+    ("pkg", "list"): "`ros2 pkg executables` names the packages that have programs.",
+    ("pkg", "prefix"): "`ros2 pkg executables PACKAGE --full-path` tells where its programs are.",
+    ("pkg", "xml"): "It is the file package.xml in share/PACKAGE of the folder that the package is installed in.",
     ("service", "echo"): "The Graph tab shows the calls of a service and their answers.",
+    ("service", "find"): _ALIKE.format("service"),
     ("service", "info"): "The Graph tab shows who serves a service and who calls it.",
     ("topic", "bw"): "The Topics tab shows rate and bytes a second of each topic.",
     ("topic", "delay"): "The Topics tab shows how old the newest message is.",
+    ("topic", "find"): _ALIKE.format("topic"),
 }
 """Verbs of the real tool that are not here, and where Deck does the same."""

@@ -1,24 +1,24 @@
 """The node of one command: joins the domain of the environment, and waits until it sees the others.
 
-There is no daemon that knows the graph already. A command waits until all who are there have told
-what they have, or, if it needs one thing, until that is found. Who has not told in time is named,
-and the command ends with the exit code 1: what it has printed may not be all.
+There is no daemon that knows the graph already. A command waits until nothing new has been found for a while, or, if
+it needs one thing, until that is found.
 """
 
 from __future__ import annotations
 
-import math
 import os
+import socket
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
-from graph.participants import Roll
-from graph.ros import PEERS, RANGE, announcing
-from launcher.domain.participants import LocalParticipants
+from graph.messages.fields import to_tree
+from graph.messages.making import to_message
+from graph.messages.types import load_service
+from graph.ros import FAST_DDS, FAST_DDS_VARIABLES, LOCALHOST_ONLY, PEERS, RANGE, announcing
+from graph.scan import signature
 from ros2.ending import was_interrupted
-from ros2.presence import ANSWERED_WITHIN_S, NETWORK_S, Missing, is_off, is_wide, missing, stopped, words
-from text.i18n import localized
+from ros2.verb import ANSWERED_WITHIN_S
 
 if TYPE_CHECKING:
     import argparse
@@ -28,21 +28,19 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.task import Future
 
-    from launcher.domain.participants import LocalParticipant
+    from graph.calls.exchanges import Exchange, ServiceSet
 
-QUIET_S = 0.1
-"""Without news for so long, what has just been told is taken to be all."""
-ALONE_S = 0.8
-"""So long must nobody else be found for the graph to be taken as empty."""
-SILENT_S = 6.5
-"""So long is waited without any news from those who are there: more than two announcements."""
-LONGEST_S = 20.0
+QUIET_S = 0.5
+"""Without news for so long, all who are there are taken to be found."""
+NEAR_S, NETWORK_S = 1.0, 3.3
+"""So long at least is waited for others of this machine, and of a network, where each announces itself every 3 s."""
+LONGEST_S = 10.0
 """A graph that never comes to rest is taken as it is."""
+APPEARS_S = 3.0
+"""So long at least is waited for one thing, as for a node that was just started."""
 READY_S = 10.0
 """So long may a service of a node that is there take to be found."""
 LOOK_S = 0.05
-KERNEL_S = 0.1
-"""The kernel is asked so often who is there."""
 GONE_S = 1.0
 """A server that is not seen for so long has gone."""
 SPIN_S = 0.1
@@ -58,17 +56,9 @@ class Guest:
 
     def __init__(self, node: Node, executor: SingleThreadedExecutor, answered_within_s: float) -> None:
         self.node = node
-        self.answered_within_s = answered_within_s
+        self._answered_within_s = answered_within_s
         self._executor = executor
-        self._roll = Roll(node)
-        self._kernel = LocalParticipants(node.context.get_domain_id())
-        self._since = self._news_at = time.monotonic()
-        self._asked_at = -math.inf
-        self._here: list[LocalParticipant] = []
-        self._known: object = None
-        self._is_alone = True
-        self.missing = Missing()
-        """Who has not told all, for which reason something may not have been found."""
+        self._since_s = time.monotonic()
 
     def spin_once(self, timeout_s: float = SPIN_S) -> None:
         """Take in what has come, or wait a moment for it."""
@@ -79,20 +69,13 @@ class Guest:
                 raise KeyboardInterrupt from error
             raise
 
-    def finish(
-        self,
-        future: Future,
-        owner: str,
-        *,
-        within_s: float | None = None,
-        is_there: Callable[[], bool] = lambda: True,
-    ) -> None:
-        """Wait for the answer of `owner`, as long as the option says unless told otherwise.
+    def answer(self, future: Future, owner: str, is_there: Callable[[], bool], within_s: float | None = None) -> Any:  # noqa: ANN401 - generated
+        """Wait for the answer of `owner`, as long as the option says unless told otherwise, and return it.
 
-        Raises:
-            NoAnswerError: if it has not come by then, or `is_there` has said no for a while.
+        Raises NoAnswerError if it has not come by then, or `is_there` has said no for a while; RuntimeError for what
+        was raised in its place.
         """
-        within_s = self.answered_within_s if within_s is None else within_s
+        within_s = self._answered_within_s if within_s is None else within_s
         begun = there_at = time.monotonic()
         while not future.done():
             self.spin_once()
@@ -106,81 +89,75 @@ class Guest:
                     f"{owner} has not answered within {within_s:g} s: it may be stuck in a"
                     " callback, or before it spins, or be killed; --timeout waits longer"
                 )
+        if future.result() is None:
+            raise RuntimeError(f"Exception while calling {owner}: {future.exception()!r}")
+        return future.result()
 
-    def call(self, service: str, kind: Any, owner: str, **fields: object) -> Any:  # noqa: ANN401
+    def call(self, service: str, kind: Any, owner: str, request: object = None, within_s: float | None = None) -> Any:  # noqa: ANN401
         """Call a service of the node `owner` and return the answer; RuntimeError without one."""
         client = self.node.create_client(kind, service)
         try:
-            found = client.wait_for_service(timeout_sec=READY_S)
-            if not found and not self.await_until(client.service_is_ready):
+            if not client.wait_for_service(timeout_sec=READY_S):
                 raise RuntimeError("Wait for service timed out")
-            future = client.call_async(kind.Request(**fields))
-            self.finish(future, owner, is_there=client.service_is_ready)
-            response = future.result()
-            if response is None:
-                why = future.exception()
-                raise RuntimeError(f"Exception while calling service of node '{owner}': {why}")
-            return response
+            asked = client.call_async(request or kind.Request())
+            return self.answer(asked, owner, client.service_is_ready, within_s)
         finally:
             self.node.destroy_client(client)
 
-    def settle(self, longest_s: float = LONGEST_S) -> None:
-        """Wait until all who are there have told all, so long at most."""
-        self._await(lambda: False, longest_s)
+    def carry_out(self, node: str, exchange: Exchange, services: ServiceSet) -> None:
+        """Put an exchange's requests to a node's own services, and hand it the answers; RuntimeError without them."""
+        with suppress(StopIteration):
+            asked = next(exchange)
+            while True:
+                kind = load_service(services.types[asked.service])
+                request = to_message(kind.Request, asked.value)
+                answer = self.call(f"{node}/{asked.service}", kind, node, request, asked.within_s)
+                asked = exchange.send(to_tree(answer))
+
+    def find(self, name: str, service: str) -> str:
+        """Return the full name of a node once it serves this, as the relative name `get_parameters`, empty if not."""
+        full = name if name.startswith("/") else f"/{name}"
+        there = self.await_until(lambda: f"{full}/{service}" in dict(self.node.get_service_names_and_types()))
+        return full if there else ""
+
+    def settle(self, least_s: float = 0.0) -> None:
+        """Wait until nothing new is found; `least_s` since the command began at least."""
+        self._await(lambda: False, least_s)
 
     def await_until(self, there: Callable[[], bool]) -> bool:
         """Wait for one thing until it is there, or would be; return whether it is there."""
-        return there() or self._await(there)
+        return self._await(there, APPEARS_S)
 
-    def forgive(self) -> None:
-        """Take it that what was needed has been found, whoever has not told all."""
-        self.missing = Missing()
-
-    def look(self) -> None:
-        """See who is missing at this moment."""
-        attendance = self._roll.look()
-        now = time.monotonic()
-        if now >= self._asked_at + KERNEL_S:
-            self._asked_at = now
-            self._here = [] if is_off() else self._kernel.look()
-        self.missing = missing(attendance, self._here)
-        if (attendance, self.missing) != self._known:
-            self._known, self._news_at = (attendance, self.missing), now
-        self._is_alone = len(attendance.found) <= 1 and len(self._here) <= 1
-
-    def _await(self, there: Callable[[], bool], longest_s: float = LONGEST_S) -> bool:
-        begun = time.monotonic()
-        while True:
-            self.look()
-            if there():
-                self.forgive()
-                return True
-            now = time.monotonic()
-            if self._is_over(now) or now - begun >= longest_s:
+    def _await(self, there: Callable[[], bool], least_s: float) -> bool:
+        least_s = max(least_s, NETWORK_S if _is_wide() else NEAR_S)
+        begun = news_at = time.monotonic()
+        known: object = None
+        while not there():
+            found, now = signature(self.node), time.monotonic()
+            if found != known:
+                known, news_at = found, now
+            settled = now - news_at >= QUIET_S and now - self._since_s >= least_s
+            if settled or now - begun >= LONGEST_S:
                 return False
             time.sleep(LOOK_S)
-
-    def _is_over(self, now: float) -> bool:
-        """Return whether waiting on would bring nothing."""
-        age_s, quiet_s = now - self._since, now - self._news_at
-        if self.missing.without(stopped(self.missing.pids)):
-            return quiet_s >= SILENT_S
-        return quiet_s >= QUIET_S and age_s >= self._least_s()
-
-    def _least_s(self) -> float:
-        """Return for how long others may be there who have not announced themselves yet."""
-        if is_wide():
-            return NETWORK_S
-        return ALONE_S if self._is_alone else 0.0
+        return True
 
     def leave(self) -> None:
-        self._roll.close()
         self._executor.shutdown()
         self.node.destroy_node()
 
 
+def _is_wide() -> bool:
+    """Return whether participants of other machines can be found, by ROS's variables."""
+    near = os.environ.get(LOCALHOST_ONLY) == "1" or os.environ.get(FAST_DDS_VARIABLES[0]) == str(FAST_DDS)
+    if near or all(name == "lo" for _, name in socket.if_nameindex()):
+        return False
+    reach = os.environ.get(RANGE, "").upper()
+    return reach != "OFF" and (reach != "LOCALHOST" or bool(os.environ.get(PEERS)))
+
+
 @contextmanager
-def joined(args: argparse.Namespace, name: str = "", *, settled: bool = False) -> Iterator[Guest]:
+def joined(args: argparse.Namespace, *, settled: bool = False) -> Iterator[Guest]:
     """Open the node of a command for the length of a `with`; `settled`: it sees everybody."""
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
@@ -191,33 +168,24 @@ def joined(args: argparse.Namespace, name: str = "", *, settled: bool = False) -
     if os.environ.get(RANGE, "").upper() == "LOCALHOST" and not os.environ.get(PEERS):
         os.environ.update({name: value for name, value in announcing("localhost").items() if value})
     context.init(args=[], initialize_logging=False)
-    own = [Parameter("start_type_description_service", value=False)]
-    if getattr(args, "use_sim_time", False):
-        own.append(Parameter("use_sim_time", value=True))
     try:
         node = Node(
-            name or f"_ros2cli_{os.getpid()}",
+            f"_ros2cli_{os.getpid()}",
             context=context,
             use_global_arguments=False,
             start_parameter_services=False,
-            parameter_overrides=own,
+            parameter_overrides=[Parameter("start_type_description_service", value=False)],
         )
     except Exception as error:
         context.try_shutdown()
         raise RuntimeError(str(error)) from error
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
-    me = Guest(node, executor, getattr(args, "timeout", ANSWERED_WITHIN_S))
+    me = Guest(node, executor, getattr(args, "timeout", None) or ANSWERED_WITHIN_S)
     try:
-        spin_s = getattr(args, "spin_time", None)
-        if spin_s is not None:
-            time.sleep(spin_s)
-            me.look()
-        elif settled:
+        if settled:
             me.settle()
         yield me
-        if me.missing:
-            args.missing = localized(words(me.missing, context.get_domain_id()))
     finally:
         me.leave()
         context.try_shutdown()

@@ -11,18 +11,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 from ros2 import elsewhere
-from ros2.options import UsageError
-from ros2.verb import VERBS
+from ros2.verb import VERBS, UsageError
 from text.output import harmless_output
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ros2.verb import Verb
+    from collections.abc import Sequence
 
 USAGE_ERROR = 2
-
-
 COMMANDS: Final = {
     "action": "Various action related sub-commands",
     "bag": "Various rosbag related sub-commands",
@@ -94,18 +89,15 @@ def _run_verb(command: str, rest: list[str]) -> int | str | None:
         for name, each in sorted(VERBS.items())
         if name.startswith(f"{command} ")
     }
-    # Options of the command itself, as in `ros2 topic --include-hidden-topics list`.
-    options = []
-    while rest and rest[0].startswith("--include-hidden"):
-        options.append(rest.pop(0))
     if not rest or rest[0] in ("-h", "--help"):
-        _of_command(command, verbs).print_help()
+        summaries = {name: each.summary for name, each in verbs.items()}
+        _list_of(f"ros2 {command}", COMMANDS[command], summaries).print_help()
         return 0
     verb, *rest = rest
     if verb not in verbs:
         where = elsewhere.VERBS.get((command, verb))
         return _unknown(f"ros2 {command}", verb, where, sorted(verbs))
-    return _call(f"{command} {verb}", [*options, *rest])
+    return _call(f"{command} {verb}", rest)
 
 
 def _call(name: str, argv: list[str]) -> int | str | None:
@@ -115,22 +107,11 @@ def _call(name: str, argv: list[str]) -> int | str | None:
     )
     for part in verb.parts:
         part(parser)
-    args = parser.parse_args(argv)
-    code = verb.main(args)
-    if missing := getattr(args, "missing", ""):
-        sys.stdout.flush()
-        print(f"ros2: {missing}", file=sys.stderr)
-        return code or 1
-    return code
+    return verb.main(parser.parse_args(argv))
 
 
 def _top() -> argparse.ArgumentParser:
     return _list_of("ros2", "ros2 is an extensible command-line tool for ROS 2.", COMMANDS)
-
-
-def _of_command(command: str, verbs: Mapping[str, Verb]) -> argparse.ArgumentParser:
-    summaries = {name: each.summary for name, each in verbs.items()}
-    return _list_of(f"ros2 {command}", COMMANDS[command], summaries)
 
 
 def _list_of(program: str, description: str, entries: dict[str, str]) -> argparse.ArgumentParser:

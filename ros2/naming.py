@@ -1,22 +1,19 @@
-"""Names in the graph: which are hidden, full names of nodes, topics with their types."""
+"""What is in the graph: names of nodes, topics, services and actions, and lists of them to print."""
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from graph.housekeeping import is_hidden
+from graph.scan import full_name
+from ros2.joining import joined
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    import argparse
+    from collections.abc import Sequence
 
     from rclpy.node import Node
-
-
-def full_name(name: str, namespace: str) -> str:
-    """Return the full name of a node."""
-    return f"{namespace}{'' if namespace.endswith('/') else '/'}{name}"
 
 
 def absolute(name: str) -> str:
@@ -39,26 +36,7 @@ def nodes(node: Node, *, hidden: bool) -> list[str]:
     ]
 
 
-def servers(node: Node, service: str, type_name: str, *, hidden: bool) -> list[str]:
-    """Return the full names of the nodes that serve this, sorted: `/get_state` of each.
-
-    A list of all services would also have those that somebody only calls.
-    """
-    from rclpy.node import NodeNameNonExistentError
-
-    found = []
-    for full in nodes(node, hidden=hidden):
-        try:
-            served = dict(node.get_service_names_and_types_by_node(*split_name(full)))
-        except NodeNameNonExistentError:
-            # It left in between.
-            continue
-        if type_name in served.get(f"{full}{service}", ()):
-            found.append(full)
-    return sorted(set(found))
-
-
-def shown(names_and_types: list[tuple[str, list[str]]], *, hidden: bool) -> list[tuple[str, list[str]]]:
+def shown(names_and_types: Sequence[tuple[str, list[str]]], *, hidden: bool) -> list[tuple[str, list[str]]]:
     """Return topics or services without those that are hidden, each for one line.
 
     Whoever is no node of ROS may have any name, with line breaks in it.
@@ -68,16 +46,6 @@ def shown(names_and_types: list[tuple[str, list[str]]], *, hidden: bool) -> list
         for name, types in names_and_types
         if hidden or not is_hidden(name)
     ]
-
-
-def count(topic: str, counted: Callable[[str], int]) -> int:
-    """Return how many ends a topic has, 0 of one whose name rclpy refuses."""
-    from rclpy.exceptions import InvalidTopicNameException
-
-    try:
-        return counted(topic)
-    except (ValueError, InvalidTopicNameException):
-        return 0
 
 
 def expanded(topic: str, node: Node) -> str:
@@ -94,42 +62,40 @@ def expanded(topic: str, node: Node) -> str:
     return name
 
 
-def types_of_topic(topic: str, node: Node) -> list[str]:
-    """Return the types under which a topic is in the graph."""
-    return next((types for name, types in node.get_topic_names_and_types() if name == topic), [])
+def known(kind: str, node: Node) -> list[tuple[str, list[str]]]:
+    """Return the names and types in the graph; `kind`: `topic`, `service` or `action`."""
+    if kind == "action":
+        from rclpy.action import get_action_names_and_types
+
+        return list(get_action_names_and_types(node))
+    return list(node.get_topic_names_and_types() if kind == "topic" else node.get_service_names_and_types())
 
 
-def load(type_name: str, kind: str) -> type[Any]:
-    """Return the class of a type; `pkg/Name` means `pkg/KIND/Name`."""
-    parts = type_name.split("/")
-    if len(parts) == 2:
-        parts.insert(1, kind)
-    if len(parts) != 3 or not all(parts):
-        raise ValueError(type_name)
-    found: type[Any] = getattr(import_module(".".join(parts[:-1])), parts[-1])
-    return found
+def types_of(kind: str, name: str, node: Node) -> list[str]:
+    """Return the types under which a topic, service or action is in the graph."""
+    return dict(known(kind, node)).get(name, [])
 
 
-def _class(type_name: str, kind: str, word: str, *parts: str) -> type[Any]:
-    try:
-        found = load(type_name, kind)
-    except (AttributeError, ImportError, ValueError) as error:
-        raise RuntimeError(f"The passed {word} type is invalid") from error
-    if not all(hasattr(found, part) for part in parts):
-        raise RuntimeError(f"The passed type is not {'an' if word == 'action' else 'a'} {word}")
-    return found
+def print_names(names: Sequence[str], *, count: bool) -> None:
+    """Print names a line each, or only how many there are."""
+    if count:
+        print(len(names))
+    elif names:
+        print(*names, sep="\n")
 
 
-def message_class(type_name: str) -> type[Any]:
-    """Return the class of a message; RuntimeError if there is none."""
-    return _class(type_name, "msg", "message")
+def list_all(kind: str, args: argparse.Namespace) -> None:
+    """Print all names, with types if asked."""
+    with joined(args, settled=True) as me:
+        rows = shown(known(kind, me.node), hidden=getattr(args, "hidden", True))
+    lines = [f"{name} [{', '.join(types)}]" if args.show_types else name for name, types in rows]
+    print_names(lines, count=args.count)
 
 
-def service_class(type_name: str) -> type[Any]:
-    """Return the class of a service; RuntimeError if there is none."""
-    return _class(type_name, "srv", "service", "Request", "Response")
-
-
-def action_class(type_name: str) -> type[Any]:
-    """Return the class of an action; RuntimeError if there is none."""
-    return _class(type_name, "action", "action", "Goal")
+def print_types(kind: str, args: argparse.Namespace) -> int | None:
+    """Print the types of one; the exit code is 1 if it is not there."""
+    with joined(args) as me:
+        if not me.await_until(lambda: bool(types_of(kind, args.name, me.node))):
+            return 1
+        print(*map(plain, types_of(kind, args.name, me.node)), sep="\n")
+    return None

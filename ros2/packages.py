@@ -17,6 +17,15 @@ MOST = 4000
 INDEX = Path("share/ament_index/resource_index/packages")
 
 
+CONFIG = """\
+[develop]
+script_dir=$base/lib/{name}
+[install]
+install_scripts=$base/lib/{name}
+"""
+"""setup.cfg of a package: without it, setuptools puts programs into bin/."""
+
+
 class NoPackageError(RuntimeError):
     """There is no such package."""
 

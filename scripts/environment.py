@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 # Run by its path, before there is an environment: modules beside it have bare names.
+from distro import FIRST, MARK, UnknownDistroError, for_distro, wanted_distro
 from interface_names import wrong_names
 from setup_words import told
 from wheel_cache import WheelCache
@@ -38,7 +39,7 @@ PLAIN = re.compile(r"[\w/.,:=@%+~ -]+")
 """Paths that need no quoting in CMake and the shells it starts."""
 BUILT = re.compile(rb"^\s*\[(\d+)/(\d+)\]", re.MULTILINE)
 """What ninja says before each file that it builds."""
-REQUIRE = ("install", "--no-deps", "--require-hashes", "--requirement")
+REQUIRE = ("install", "--no-deps", "--require-hashes")
 """Packages after this are installed only at the locked version, and only from the locked file.
 
 That file names every dependency. Were pip to look for them itself, it would take the newest release
@@ -147,12 +148,17 @@ def heading(what: str) -> str:
     return told("  %d of %d: %s ... ", Step.ended, Step.total, what)
 
 
+def locked_files() -> list[Path]:
+    """Return the files with what Deck needs, and with the ROS that it runs on."""
+    return [LOCKED / "deck.txt", LOCKED / f"ros-{wanted_distro()}.txt"]
+
+
 def loaded(log: Path) -> str:
     """Return how many of the locked packages pip has loaded by its log; while it unpacks them, all."""
     lines = read(log).decode(errors="replace").splitlines()
     left_out = sum(line.startswith("Ignoring ") for line in lines)
     loaded = sum(line.startswith("Collecting ") for line in lines)
-    wanted = sum("==" in line for line in (LOCKED / "deck.txt").read_text().splitlines())
+    wanted = sum("==" in line for file in locked_files() for line in file.read_text().splitlines())
     return f"{loaded}/{wanted - left_out}"
 
 
@@ -163,8 +169,8 @@ def built(log: Path) -> str:
 
 
 def wanted_interfaces() -> str:
-    """Return a digest of the sources and tools of the message types."""
-    return fingerprint(ROOT / "interfaces") + fingerprint(LOCKED)
+    """Return for which ROS, and a digest of the sources and tools of the message types."""
+    return wanted_distro() + fingerprint(ROOT / "interfaces") + fingerprint(LOCKED)
 
 
 def fingerprint(folder: Path) -> str:
@@ -186,6 +192,7 @@ class Environment:
         self.ready = folder / ".ready"
         self.unfinished = folder / ".unfinished"
         self.interfaces = folder / ".interfaces"
+        self.distro = folder / MARK
 
     def identity(self) -> bytes:
         """Return a text that changes when the tree is moved or Python is replaced.
@@ -195,14 +202,18 @@ class Environment:
         return os.fsencode(f"{self.folder.resolve()} {self.python.resolve()}\n")
 
     def is_sound(self) -> bool:
-        """Return whether the set-up was finished, here, with the requested Python."""
+        """Return whether the set-up was finished, here, with the requested Python and ROS."""
         if os.environ.get("PYTHON") and self.python.resolve() != Path(sys.executable).resolve():
+            return False
+        if (read(self.distro).decode() or FIRST) != wanted_distro(self.folder):
             return False
         return not self.unfinished.exists() and read(self.ready) == self.identity()
 
     def update(self) -> None:
         """Update the environment to match pyproject.toml and interfaces/."""
-        sound = self.is_sound()
+        sound, distro = self.is_sound(), wanted_distro(self.folder)
+        # For the steps, which are programs of their own.
+        os.environ["ROS"] = distro
         changed = not sound or read(self.interfaces) != wanted_interfaces().encode()
         if changed and (wrong := wrong_names(ROOT / "interfaces")):
             raise WrongNameError("\n".join(wrong))
@@ -210,6 +221,7 @@ class Environment:
         if not sound:
             self.begin()
             Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
+            self.distro.write_text(distro)
         # A half-finished installation looks complete to the next pip. When pip fails it undoes its
         # work; when it is killed, this mark stays behind.
         self.unfinished.touch()
@@ -269,8 +281,8 @@ class Environment:
 
     def install_deck(self) -> None:
         """Install ROS 2, Deck's libraries and the test tools, then Deck itself, editable."""
-        locked = LOCKED / "deck.txt"
-        Step("Libraries of Deck and ROS 2", *pip(self.python, *REQUIRE, locked), done=loaded).finish()
+        named = [word for file in locked_files() for word in ("--requirement", file)]
+        Step("Libraries of Deck and ROS 2", *pip(self.python, *REQUIRE, *named), done=loaded).finish()
         bare = ("install", "--no-deps", "--no-build-isolation", "--editable", ".")
         Step("Deck itself", *pip(self.python, *bare)).finish()
 
@@ -303,6 +315,8 @@ def build_interfaces(wheels: Path, folder: Path) -> None:
     sources = folder / "interfaces"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(ROOT / "interfaces", sources)
+    distro, project = wanted_distro(), sources / "pyproject.toml"
+    project.write_text(for_distro(project.read_text(), distro))
     folder /= "environment"
     python = folder / "bin" / "python"
     environ = os.environ | {"PIP_NO_COMPILE": "1"}
@@ -312,7 +326,7 @@ def build_interfaces(wheels: Path, folder: Path) -> None:
     made = ("wheel", "--verbose", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels, sources)
     for command in (
         (sys.executable, "-m", "venv", "--clear", folder),
-        pip(python, *REQUIRE, LOCKED / "interfaces.txt"),
+        pip(python, *REQUIRE, "--requirement", LOCKED / f"interfaces-{distro}.txt"),
         pip(python, *made),
     ):
         subprocess.run(command, cwd=ROOT, env=environ, check=True, close_fds=False)
@@ -345,6 +359,9 @@ def main(folder: str) -> int:
     except StepError as failed:
         say("\n".join(read(failed.log).decode(errors="replace").splitlines()[-TAIL:]))
         say(told("deck: failed at: %s; the whole log is in %s", failed, failed.log))
+    except UnknownDistroError as unknown:
+        say(told("deck: ROS=%s is neither jazzy nor kilted", unknown))
+        return 2
     except WrongNameError as wrong:
         say(str(wrong))
         say(told("deck: nothing is built before these names are fixed"))

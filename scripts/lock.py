@@ -15,6 +15,9 @@ import venv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+# Run by its path: modules beside it have bare names.
+from distro import EXTRAS, for_distro
+
 if sys.version_info >= (3, 11):
     import tomllib
 else:
@@ -29,8 +32,8 @@ OLDEST = "3.10"
 UV = "uv>=0.9,<1"
 BACKENDS = {"deck": ("editables",), "interfaces": ("cmake", "ninja")}
 """Requirements that build backends only state when they are run."""
-VIEW = "view"
-"""An extra with a file of its own, to be installed after `deck.txt`: it is too large for most."""
+APART = ("docs", "view")
+"""Extras with a file of their own each, to be installed after `deck.txt`: most need neither."""
 
 
 def main() -> int:
@@ -39,7 +42,8 @@ def main() -> int:
     wanted = requirements()
     LOCKED.mkdir(exist_ok=True)
     found = {name: resolved(uv, lines) for name, lines in wanted.items()}
-    found[VIEW] = beyond(found["deck"], found[VIEW])
+    for name in (*APART, *map("ros-{}".format, EXTRAS)):
+        found[name] = beyond(found["deck"], found[name])
     for name, text in found.items():
         path = LOCKED / f"{name}.txt"
         path.write_text(f"# Written by `make lock`.\n{text}")
@@ -60,17 +64,21 @@ def requirements() -> dict[str, list[str]]:
     deck = tomllib.loads((ROOT / "pyproject.toml").read_text())
     interfaces = tomllib.loads((ROOT / "interfaces" / "pyproject.toml").read_text())
     extras = deck["project"]["optional-dependencies"]
-    wanted = {
-        "deck": [
-            *deck["project"]["dependencies"],
-            *(line for name, extra in extras.items() if name != VIEW for line in extra),
-            *deck["build-system"]["requires"],
-            *BACKENDS["deck"],
-        ],
-        "interfaces": [*interfaces["build-system"]["requires"], *BACKENDS["interfaces"]],
+    apart = {*APART, *EXTRAS.values()}
+    of_all = [
+        *deck["project"]["dependencies"],
+        *(line for name, extra in extras.items() if name not in apart for line in extra),
+        *deck["build-system"]["requires"],
+        *BACKENDS["deck"],
+    ]
+    build = [*interfaces["build-system"]["requires"], *BACKENDS["interfaces"]]
+    return {
+        "deck": of_all,
+        # Together, so that what both need has one version.
+        **{extra: [*of_all, *extras[extra]] for extra in APART},
+        **{f"ros-{name}": [*of_all, *extras[extra]] for name, extra in EXTRAS.items()},
+        **{f"interfaces-{name}": list(filter(None, (for_distro(line, name) for line in build))) for name in EXTRAS},
     }
-    # Together, so that what both need has one version.
-    return {**wanted, VIEW: [*wanted["deck"], *extras[VIEW]]}
 
 
 def beyond(base: str, whole: str) -> str:
@@ -80,8 +88,11 @@ def beyond(base: str, whole: str) -> str:
     """
     already = dict(_pinned(base))
     more = {line: text for line, text in _pinned(whole) if line not in already}
-    names = {line.partition("==")[0] for line in already}
-    if clashes := [line for line in more if line.partition("==")[0] in names]:
+    # The same version for more machines is no clash.
+    versions = {line.partition(" ;")[0] for line in already}
+    names = {version.partition("==")[0] for version in versions}
+    others = {line.partition(" ;")[0] for line in more} - versions
+    if clashes := [version for version in others if version.partition("==")[0] in names]:
         raise ValueError(f"not as in deck.txt: {', '.join(clashes)}")
     return "".join(more.values())
 

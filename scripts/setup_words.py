@@ -43,6 +43,7 @@ RUSSIAN = {
         "deck: пока эти имена не исправлены, ничего не собирается"
     ),
     "deck: cannot set up here: %s": "deck: здесь установить нельзя: %s",
+    "deck: ROS=%s is neither jazzy nor kilted": "deck: ROS=%s — это не jazzy и не kilted",
     "\ndeck: set-up interrupted; the next `make` starts it again": (
         "\ndeck: установка прервана; следующий `make` начнёт её снова"
     ),

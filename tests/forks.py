@@ -8,7 +8,7 @@ import subprocess
 from typing import TYPE_CHECKING
 from unittest import mock
 
-from launcher.processes.title import room_for_marks
+from launcher.processes.prctl import room_for_marks
 
 if TYPE_CHECKING:
     import signal

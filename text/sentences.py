@@ -68,6 +68,14 @@ def say(template: str, **values: object) -> Words:
     return Words(template, values)
 
 
+class SaidError(Exception):
+    """What went wrong, as a sentence."""
+
+    def __init__(self, words: str) -> None:
+        super().__init__(words)
+        self.words = words
+
+
 def reason_of(error: BaseException) -> str:
     """Return what an error says: the sentence it was made with, else its text, else its kind.
 

@@ -13,9 +13,6 @@ import re
 from functools import lru_cache
 from typing import Any, TypeAlias
 
-import yaml
-
-from text.nested_yaml import read_yaml
 from text.plain import is_plain, replaced
 
 Scalar: TypeAlias = "bool | int | float | str | None"
@@ -90,9 +87,15 @@ def quoted(text: str) -> str:
     """Return a text, in double quotes where it would else be something different."""
     is_word = len(text) <= LONGEST_WORD and _PLAIN.fullmatch(text) and is_plain(text)
     is_text = is_word and meaning(text) == text
-    if is_text and _RESOLVER.resolve(yaml.ScalarNode, text, (True, False)) == _TEXT:
-        return text
-    return in_quotes(text)
+    return text if is_text and _stays_text(text) else in_quotes(text)
+
+
+def _stays_text(text: str) -> bool:
+    # A supervisor writes parameters, and does without the rest of YAML.
+    import yaml
+
+    resolver: Any = yaml.resolver.Resolver()
+    return bool(resolver.resolve(yaml.ScalarNode, text, (True, False)) == _TEXT)
 
 
 def in_quotes(text: str) -> str:
@@ -113,6 +116,10 @@ def unquoted(text: str) -> str | None:
     """Return the text that stands between double quotes, None if it is written otherwise."""
     if len(text) < 2 or not (text.startswith('"') and text.endswith('"')):
         return None
+    import yaml
+
+    from text.nested_yaml import read_yaml
+
     try:
         value = read_yaml(text)
     except (yaml.YAMLError, ValueError):
@@ -120,5 +127,4 @@ def unquoted(text: str) -> str | None:
     return value if isinstance(value, str) else None
 
 
-_RESOLVER: Any = yaml.resolver.Resolver()
 _TEXT = "tag:yaml.org,2002:str"

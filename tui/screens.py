@@ -103,6 +103,7 @@ DIALOGS = (
     "tui.lifecycle.dialogs",
     "tui.topics.actions_of_publish",
     "tui.tour.screen",
+    "tui.viewing.dialog",
 )
 """Modules that define actions of their own, imported when first shown."""
 

@@ -16,33 +16,35 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from brain.faults import ModelError
 from brain.key import key_of
 from brain.settings import load
-from cli.child_python import python as child_python
-from cli.doctor.finding import Finding, fail, ok, warn
+from cli.doctor.finding import Finding, either, fail, ok, warn
+from graph.distro import TESTED, wheel_of
 from launcher.domain.discovery import set_discovery, why_open
 from launcher.domain.domain import LAST_SAFE_DOMAIN, choose_domain, default_domain
 from launcher.errors import DomainError, LauncherError
 from launcher.rundir import check_writable, found_run_dir, log_path
-from launcher.serial_ports import serial_ports
+from launcher.serial_ports import SerialPort, serial_ports
 from text.i18n import LocalizedFloat, _, localized
 from text.nested import read_json
 from text.plain import plain
-from text.run_path import run_path
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-
-    from launcher.serial_ports import SerialPort
 
 ROOT = Path("/")
+_NOT_FROM_HERE = "import sys; sys.path[:] = [place for place in sys.path if place]\n"
+"""`-c` would search the current folder for modules first, whatever is in it."""
+
+
+def child_python(program: str, *arguments: str) -> list[str]:
+    """Return the command line of a small program for another process, since it may hang or crash."""
+    return [sys.executable, "-c", _NOT_FROM_HERE + program, *arguments]
 
 
 def _text(path: Path) -> str:
@@ -70,16 +72,12 @@ def python(
     version: Sequence[int] = sys.version_info[:3], system: str = "", version_of: Callable[[str], str] = _version
 ) -> Iterator[Finding]:
     text = _("Python {version} ({path})").format(version=".".join(map(str, version)), path=sys.executable)
-    if FIRST <= tuple(version[:2]) < AFTER_LAST:
-        yield ok("python", text)
-    else:
-        yield fail("python", text, _("use Python 3.10 to 3.13: make setup PYTHON=python3.12"))
+    fix = _("use Python 3.10 to 3.13: make setup PYTHON=python3.12")
+    yield ok("python", text) if FIRST <= tuple(version[:2]) < AFTER_LAST else fail("python", text, fix)
     system = system or platform.system()
     text = f"{system} {platform.machine()}"
-    if system == "Linux":
-        yield ok("machine", text)
-    else:
-        yield fail("machine", text, _("Deck runs on Linux; on Windows inside WSL 2"))
+    fix = _("Deck runs on Linux; on Windows inside WSL 2")
+    yield ok("machine", text) if system == "Linux" else fail("machine", text, fix)
     missing = [name for name in PACKAGES if not version_of(name)]
     if missing:
         yield fail("packages", _("not installed: {names}").format(names=" ".join(missing)), _("run: make setup"))
@@ -168,10 +166,8 @@ def ros(
         yield fail("ros.rclpy", _("ROS 2: rclpy cannot be imported ({reason})").format(reason=error), get_ros)
         return
     text = f"ROS 2 {_origin(rclpy, environ)} ({rclpy})"
-    if environ.get("ROS_DISTRO", "jazzy") == "jazzy":
-        yield ok("ros.distro", text)
-    else:
-        yield warn("ros.distro", text, _("Deck is tested with jazzy only; others may work"))
+    fix = _("Deck is tested with jazzy and kilted only; others may work")
+    yield either(environ.get("ROS_DISTRO", TESTED[0]) in TESTED, "ros.distro", text, fix)
     if error:
         fix = _("try: unset RMW_IMPLEMENTATION, or install that middleware")
         text = _("rclpy is installed, but no node can be created: {reason}").format(reason=error)
@@ -193,12 +189,10 @@ def ros(
 def _origin(rclpy: str, environ: Mapping[str, str]) -> str:
     """Say where this ROS 2 comes from."""
     distro, conda = environ.get("ROS_DISTRO", ""), environ.get("CONDA_PREFIX", "")
-    try:
-        wheel = metadata.distribution("ros-jazzy-rclpy")
-        if rclpy.startswith(str(wheel.locate_file(""))):
-            return _("jazzy, wheels from PyPI (rclpy {version})").format(version=wheel.version)
-    except metadata.PackageNotFoundError:
-        pass
+    for name in TESTED:
+        wheel = wheel_of(name)
+        if wheel is not None and rclpy.startswith(str(wheel.locate_file(""))):
+            return _("{distro}, wheels from PyPI (rclpy {version})").format(distro=name, version=wheel.version)
     if rclpy.startswith("/opt/ros/"):
         return _("{distro} from the distribution").format(distro=rclpy.split("/")[3])
     if conda and rclpy.startswith(conda):
@@ -219,7 +213,7 @@ def network(environ: Mapping[str, str] = os.environ) -> Iterator[Finding]:
         text = text.format(domain=domain, whose=whose)
         fix = _("export ROS_DOMAIN_ID={domain}: ports of domains above {safe} may be taken")
         fix = fix.format(domain=default_domain(), safe=LAST_SAFE_DOMAIN)
-        yield warn("ros.domain", text, fix) if domain > LAST_SAFE_DOMAIN else ok("ros.domain", text)
+        yield either(domain <= LAST_SAFE_DOMAIN, "ros.domain", text, fix)
     if environ.get("ROS_LOCALHOST_ONLY") == "1":
         text = _("ROS_LOCALHOST_ONLY=1 is obsolete and overrides ROS_AUTOMATIC_DISCOVERY_RANGE")
         yield warn("ros.localhost_only", text, _("unset it; Deck does so for its own nodes"))
@@ -269,10 +263,8 @@ def terminal(
         yield _colour(environ, term)
         columns, lines = size or shutil.get_terminal_size(fallback=(0, 0))
         text = _("{columns} columns, {lines} lines").format(columns=columns, lines=lines)
-        if columns < LEAST[0] or lines < LEAST[1]:
-            yield warn("terminal.size", text, _("at least 80x24; 120x40 is comfortable"))
-        else:
-            yield ok("terminal.size", text)
+        fix = _("at least 80x24; 120x40 is comfortable")
+        yield either(columns >= LEAST[0] and lines >= LEAST[1], "terminal.size", text, fix)
 
 
 def _colour(environ: Mapping[str, str], term: str) -> Finding:
@@ -371,11 +363,10 @@ def media(root: Path = ROOT, allowed: Callable[[Path], bool] = may_use) -> Itera
         text = _("sound: {cards}: no permission").format(cards=cards)
         yield warn("sound", text, "sudo usermod -aG audio $USER")
     missing = [name for name in SPEECH if find_spec(name) is None]
+    text = _("speech offline: in English; it speaks Russian too")
     if missing:
         text = _("speech offline: without {packages}; to hear and speak: {fix}")
-        yield ok("speech", text.format(packages=", ".join(missing), fix="pip install 'deck-robot[voice]'"))
-    else:
-        yield ok("speech", _("speech offline: in English; it speaks Russian too"))
+    yield ok("speech", text.format(packages=", ".join(missing), fix="pip install 'deck-robot[voice]'"))
 
 
 def _raspberry(root: Path) -> str:
@@ -480,7 +471,8 @@ def runs() -> Iterator[Finding]:
     from launcher.runs.strays import find_strays
 
     try:
-        here, logs = found_run_dir() or run_path(os.environ), log_path()
+        found_run_dir()
+        logs = log_path()
         there = next(folder for folder in (logs, *logs.absolute().parents) if folder.exists())
         check_writable(there)
     except LauncherError as error:
@@ -488,10 +480,7 @@ def runs() -> Iterator[Finding]:
         return
     free = shutil.disk_usage(there).free
     text = _("logs in {path}, {size:.1f} GB free").format(path=logs, size=LocalizedFloat(free / 1e9))
-    if free < LEAST_FREE:
-        yield warn("folders", text, _("remove old logs there, or set DECK_LOG_DIR"))
-    else:
-        yield ok("folders", text)
+    yield either(free >= LEAST_FREE, "folders", text, _("remove old logs there, or set DECK_LOG_DIR"))
     sessions = running()
     names = ", ".join(f"{each.name} ({each.domain})" for each in sessions)
     yield ok("running", _("running: {names}").format(names=names) if names else _("no profile is running"))
@@ -505,7 +494,7 @@ def runs() -> Iterator[Finding]:
     if apart:
         text = _("also running, in a container or with another DECK_RUN_DIR: {names}")
         yield ok("apart", text.format(names=", ".join(apart)))
-    strays = find_strays(here)
+    strays = find_strays()
     if strays:
         text = _("left behind by an earlier run: {names}")
         fix = _("the screen offers to stop them; or: kill {pids}").format(

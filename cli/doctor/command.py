@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from argparse import Namespace
+from collections.abc import Iterable
 
-from cli.commands import command
+from cli.commands import Parser, command
 from cli.doctor.checks import examine
-from cli.doctor.finding import Level
+from cli.doctor.finding import Finding, Level
 from cli.options import add_graph, add_json
 from launcher.errors import UsageError
 from text.i18n import N_, _
 from text.output import DIM, GREEN, RED, YELLOW, Paint, json_text, write
 from text.plain import plain
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Iterable
-
-    from cli.commands import Parser
-    from cli.doctor.finding import Finding
 
 LOOKS = {Level.OK: (N_("ok"), GREEN), Level.WARN: (N_("warn"), YELLOW), Level.FAIL: (N_("FAIL"), RED)}
 
@@ -88,11 +82,7 @@ def show(findings: Iterable[Finding], paint: Paint) -> None:
     """Write a line for each finding, with the fix below it."""
     width = max(len(_(word)) for word, _colour in LOOKS.values())
     for finding in findings:
-        _show(finding, paint, width)
-
-
-def _show(finding: Finding, paint: Paint, width: int) -> None:
-    word, colour = LOOKS[finding.level]
-    write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
-    if finding.fix:
-        write(f"{'':{width}}  {paint('-> ' + finding.fix, DIM)}")
+        word, colour = LOOKS[finding.level]
+        write(f"{paint(_(word).ljust(width), colour)}  {plain(finding.text)}")
+        if finding.fix:
+            write(f"{'':{width}}  {paint('-> ' + finding.fix, DIM)}")

@@ -33,15 +33,17 @@ class Finding:
 
 
 def ok(key: str, text: str) -> Finding:
-    """Report that something is all right."""
     return Finding(key, Level.OK, text)
 
 
 def warn(key: str, text: str, fix: str) -> Finding:
-    """Report that something will not work, or not reliably."""
     return Finding(key, Level.WARN, text, fix)
 
 
 def fail(key: str, text: str, fix: str) -> Finding:
-    """Report that something essential is missing."""
     return Finding(key, Level.FAIL, text, fix)
+
+
+def either(holds: bool, key: str, text: str, fix: str) -> Finding:
+    """Report something that is all right if it holds, and else will not work, or not reliably."""
+    return ok(key, text) if holds else warn(key, text, fix)

@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from cli.doctor.finding import Finding, fail, warn
-from cli.observing import FOUND_S, LOOK_S, domain_view, tell_that_it_takes_time
+from cli.observing import FOUND_S, domain_view, tell_that_it_takes_time
 from graph.data import GraphUpdate
-from graph.findings.finding import FORGOTTEN_S, FindingLevel
+from graph.findings.finding import FORGOTTEN_S, FindingLevel, GraphFinding
 from graph.findings.rules import LastingFindings
 from graph.housekeeping import is_housekeeping
 from launcher.processes.interrupts import run
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.session.bypass import NORMS
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cli.observing import DomainView
-    from graph.findings.finding import GraphFinding
 
 LISTEN_S = FOUND_S + 2.0
 """Long enough to find everybody, and to hear whether what they say is regular."""
@@ -35,46 +30,42 @@ _PLACES = {
 }
 
 
-class GraphExamination:
+class GraphExamination(NamedTuple):
     """The findings of one domain, and the graph that they were found in."""
 
-    def __init__(self, domain: int, update: GraphUpdate, found: Sequence[GraphFinding]) -> None:
-        self.domain = domain
-        self.update = update
-        self.found = found
+    domain: int
+    update: GraphUpdate
+    found: Sequence[GraphFinding]
 
     def for_programs(self) -> list[dict[str, object]]:
         """Return the findings as they are written with `--json`."""
         return [
             {
-                **_line(one).for_programs(),
+                **line.for_programs(),
                 "text": localized(one.what),
                 "place": {"kind": one.place.kind, "name": one.place.name},
                 "nodes": list(one.nodes),
             }
-            for one in self.found
+            for one, line in zip(self.found, self.lines(), strict=True)
         ]
 
     def lines(self) -> list[Finding]:
-        """Return the findings as lines of the doctor's report."""
-        return [_line(one) for one in self.found]
+        return [
+            (fail if one.level is FindingLevel.ERROR else warn)(
+                f"graph.{one.rule}",
+                _(_PLACES[one.place.kind]).format(name=plain(one.place.name), what=localized(one.what)),
+                localized(one.mend),
+            )
+            for one in self.found
+        ]
 
     def summary(self) -> str:
-        """Return what was examined, and how much was found."""
         rows = (self.update.nodes, self.update.topics, self.update.services)
         nodes, topics, services = (sum(not is_housekeeping(row.name) for row in of_kind) for of_kind in rows)
         words = _("domain {domain}: nodes: {nodes}, topics: {topics}, services: {services}")
         told = words.format(domain=self.domain, nodes=nodes, topics=topics, services=services)
-        if not self.found:
-            return f"{told} · " + _("no findings")
-        return f"{told} · " + _("findings: {count}").format(count=len(self.found))
-
-
-def _line(one: GraphFinding) -> Finding:
-    words = _(_PLACES[one.place.kind])
-    text = words.format(name=plain(one.place.name), what=localized(one.what))
-    make = fail if one.level is FindingLevel.ERROR else warn
-    return make(f"graph.{one.rule}", text, localized(one.mend))
+        count = _("findings: {count}").format(count=len(self.found)) if self.found else _("no findings")
+        return f"{told} · {count}"
 
 
 def examine_graph(asked: int | None, wanted: str | None = None) -> GraphExamination:
@@ -86,7 +77,16 @@ def examine_graph(asked: int | None, wanted: str | None = None) -> GraphExaminat
     with domain_view(asked, wanted, all_topics=True) as view:
         words = _("looking at domain {domain} for {seconds} s").format(domain=view.domain, seconds=round(LISTEN_S))
         tell_that_it_takes_time(words)
-        return _examined(view)
+        lasting, update = LastingFindings(NORMS), GraphUpdate(0.0)
+        failures = run(_failures(view.domain))
+        while True:
+            for update in view.updates():
+                lasting.take(update, time.monotonic(), failures)
+            now_s, passed_s = time.monotonic(), view.listened_s()
+            settled = view.is_at_rest() and lasting.settles_in_s(now_s) is None
+            if passed_s >= MOST_S or (passed_s >= LISTEN_S and settled):
+                view.refuse_empty(update)
+                return GraphExamination(view.domain, update, lasting.told(now_s))
 
 
 async def _failures(domain: int) -> dict[str, str]:
@@ -105,17 +105,3 @@ async def _failures(domain: int) -> dict[str, str]:
             found |= failures_of(link.nodes.values())
             await link.aclose()
     return found
-
-
-def _examined(view: DomainView) -> GraphExamination:
-    lasting, update = LastingFindings(NORMS), GraphUpdate(0.0)
-    failures = run(_failures(view.domain))
-    while True:
-        for update in view.updates(LOOK_S):
-            lasting.take(update, time.monotonic(), failures)
-        now_s = time.monotonic()
-        passed_s = view.listened_s()
-        settled = view.is_at_rest() and lasting.settles_in_s(now_s) is None
-        if passed_s >= MOST_S or (passed_s >= LISTEN_S and settled):
-            view.refuse_empty(update)
-            return GraphExamination(view.domain, update, lasting.told(now_s))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from brain.budget import Ledger
-from brain.client import ModelClient
 from brain.faults import ModelError
 from brain.key import key_of
-from brain.ladder import Ladder
 from brain.settings import KEY_VARIABLE, ModelSettings, required
 from brain.situation import Memory, Situation, conversation
 from brain.thinking import think
@@ -14,6 +14,9 @@ from cli.doctor.finding import Finding, fail, ok
 from launcher.processes.interrupts import run
 from robot.commands.schema import SpokenResponse, parse_llm
 from text.i18n import _, decimal, localized
+
+if TYPE_CHECKING:
+    from brain.client import ModelClient
 
 _PROMPT = "You are a robot that is being tested. Stand still: give no commands, and say hello."
 
@@ -25,6 +28,9 @@ def try_model() -> list[Finding]:
         ModelError: if none is, or the settings cannot be used.
     """
     settings = required()
+    # Needs what is only there with the extra.
+    from brain.client import ModelClient
+
     key = key_of(settings)
     source = settings.key_env or settings.key_file or KEY_VARIABLE
     told = _("from {source}").format(source=source) if key else _("none needed, none sent")
@@ -44,6 +50,8 @@ def try_model() -> list[Finding]:
 
 
 async def _ask(client: ModelClient, settings: ModelSettings) -> list[Finding]:
+    from brain.ladder import Ladder
+
     async with client:
         ladder = Ladder(client, settings.model)
         ladder.forget()

@@ -8,20 +8,16 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
-from cli.doctor.finding import Level
-from cli.preflight.open_port import DeviceAnswer, OpenPort, bad, good
+from cli.doctor.finding import Finding, warn
+from cli.preflight.open_port import OpenPort, bad, good
 from robot.wire.lsc16 import Battery, BatteryRequest, ServoDecoder
 from robot.wire.lsc16 import encode as encode_servos
 from robot.wire.pico import PROTOCOL, Hello, PicoDecoder, Telemetry, Welcome
 from robot.wire.pico import encode as encode_pico
 from robot.wire.tfluna import Model, TofDecoder, TofFrame
 from text.i18n import LocalizedFloat, _
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
 
 NAMES = {"pico": "Pico", "tf_luna": "TF-Luna", "tfmini_s": "TFmini-S", "lsc16": "LSC-16"}
 """Kind of device to its display name."""
@@ -33,7 +29,7 @@ ENOUGH_FRAMES = 3
 """Readings needed to recognise a sonar at an unexpected port: fewer may be chance."""
 
 
-def ask(kind: str, line: OpenPort) -> DeviceAnswer:
+def ask(kind: str, line: OpenPort) -> Finding:
     """Check the device at a port; raises OSError if it disappears meanwhile."""
     if kind == "pico":
         return _pico(line)
@@ -55,7 +51,7 @@ def recognised(heard: bytes) -> str:
     return ""
 
 
-def _pico(line: OpenPort) -> DeviceAnswer:
+def _pico(line: OpenPort) -> Finding:
     decoder = PicoDecoder()
     told: list[Telemetry | Welcome] = []
 
@@ -96,7 +92,7 @@ def _greet(line: OpenPort, answered: Callable[[bytes], bool]) -> bytes:
     return heard
 
 
-def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> DeviceAnswer:
+def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) -> Finding:
     text = _("firmware {firmware}").format(firmware=welcome.firmware)
     if telemetry is not None and telemetry.battery_v is not None:
         text += ", " + _("battery {volts:.1f} V").format(volts=LocalizedFloat(telemetry.battery_v))
@@ -113,17 +109,17 @@ def _well_pico(welcome: Welcome, telemetry: Telemetry | None, *, garbled: bool) 
     if not found:
         return good(text)
     text = ", ".join([text, *(words for words, _fix in found)])
-    return DeviceAnswer(Level.WARN, text, "; ".join(dict.fromkeys(fix for _words, fix in found)))
+    return warn("", text, "; ".join(dict.fromkeys(fix for _words, fix in found)))
 
 
-def _python_prompt(heard: bytes) -> DeviceAnswer | None:
+def _python_prompt(heard: bytes) -> Finding | None:
     if b">>>" not in heard and b"MicroPython" not in heard and b"Traceback" not in heard:
         return None
     text = _("a Pico answers, but not with Deck's firmware")
     return bad(text, _("flash firmware/pico2 (docs/pico-firmware.md)"))
 
 
-def _sonar(kind: str, line: OpenPort) -> DeviceAnswer:
+def _sonar(kind: str, line: OpenPort) -> Finding:
     decoder = TofDecoder()
     model = Model(kind)
     heard = line.hear(ANSWER_S, lambda data: len(decoder.feed(data)) > 0)
@@ -144,7 +140,7 @@ def _sonar(kind: str, line: OpenPort) -> DeviceAnswer:
     text = _("{distance}, {rate:.0f} readings a second").format(distance=_far(metres), rate=rate)
     if decoder.errors > before:
         garbled = _("{text}, many of them garbled").format(text=text)
-        return DeviceAnswer(Level.WARN, garbled, _better_cable())
+        return warn("", garbled, _better_cable())
     return good(text)
 
 
@@ -160,7 +156,7 @@ def _better_cable() -> str:
     return _("check the cable: short, away from those of the motors, with a common ground")
 
 
-def _servos(line: OpenPort) -> DeviceAnswer:
+def _servos(line: OpenPort) -> Finding:
     decoder = ServoDecoder()
     told: list[Battery] = []
 
@@ -178,7 +174,7 @@ def _servos(line: OpenPort) -> DeviceAnswer:
     return good(_("battery {volts:.1f} V").format(volts=LocalizedFloat(told[0].millivolts / 1000)))
 
 
-def _another(kind: str, heard: bytes) -> DeviceAnswer:
+def _another(kind: str, heard: bytes) -> Finding:
     text = _("{found} answers here, not the {wanted}")
     return bad(
         text.format(found=recognised(heard), wanted=NAMES[kind]),
@@ -186,7 +182,7 @@ def _another(kind: str, heard: bytes) -> DeviceAnswer:
     )
 
 
-def _nothing(kind: str, heard: bytes, baud: int) -> DeviceAnswer:
+def _nothing(kind: str, heard: bytes, baud: int) -> Finding:
     """Report that nothing useful was received: garbage, or not a single byte."""
     name = NAMES[kind]
     if heard:

@@ -1,4 +1,4 @@
-"""`deck check --preflight`: whether each device is found, permitted, free, and answering; nothing moves.
+"""`deck check --preflight`: whether each real device is found, permitted, free, and answers; nothing moves.
 
 A serial device is asked at its port, see `cli.preflight.answers`. A camera has to deliver one picture; for sound
 only the names of the devices are checked, and nothing is recorded or played. Both in processes of their own, as
@@ -10,34 +10,39 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from argparse import Namespace
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
-from cli.child_python import python
-from cli.doctor.checks import permission_fix
-from cli.doctor.finding import Finding, Level
+from cli.doctor.checks import child_python, permission_fix
+from cli.doctor.command import show
+from cli.doctor.finding import Finding, Level, warn
 from cli.preflight.answers import ask
-from cli.preflight.open_port import DeviceAnswer, bad, good, held, holders, opened
+from cli.preflight.open_port import bad, good, held, holders, opened
+from launcher.errors import UsageError
+from launcher.profile.catalog import find_profile
 from launcher.profile.devices import wanted
+from launcher.profile.load import load_profile
+from launcher.profile.model import Profile
 from launcher.profile.serial_choice import AUTO, UnresolvedPort, choose, variable
-from launcher.serial_ports import lasting_names, serial_ports
-from text.i18n import _, localized
+from launcher.serial_ports import SerialPort, lasting_names, serial_ports
+from text.i18n import _, localized, ngettext
 from text.nested import read_json
+from text.output import Paint, json_text, write
+from text.plain import plain
+from text.sentences import say
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from launcher.profile.load import Profile
-    from launcher.serial_ports import SerialPort
-
-    Settings = Mapping[str, Any]
-    Question = Callable[[], tuple[str, DeviceAnswer]]
+Settings: TypeAlias = Mapping[str, Any]
+Question: TypeAlias = Callable[[], tuple[str, Finding]]
 
 BAUD = 115_200
 WITHIN_S = 12.0
+NOT_READY = 2
 OFF = "none"
 """The value that means "no device" to the sound node."""
 PICTURE = """
@@ -50,6 +55,39 @@ if well:
 """
 SOUND = Path(__file__).resolve().parents[2] / "nodes" / "drivers" / "sound_device.py"
 """Lists the devices as the node of the sound knows them; run, never imported."""
+
+
+def preflight_command(options: Namespace) -> int:
+    """Check every device of a profile; return 2 if one of them is not ready.
+
+    Raises:
+        UsageError: without a profile, or with mock hardware, whose devices exist only while it
+            runs.
+    """
+    if not options.profile:
+        raise UsageError(say("--preflight needs a profile: deck check robot --preflight"))
+    if options.hardware != "real":
+        raise UsageError(say("--preflight checks real devices: add --hardware real"))
+    profile = load_profile(
+        find_profile(options.profile), hardware=options.hardware, overrides=options.overrides, domain=options.domain
+    )
+    findings = examine(profile)
+    bad = sum(finding.level is Level.FAIL for finding in findings)
+    if options.json:
+        write(json_text([finding.for_programs() for finding in findings], indent=2))
+        return NOT_READY if bad else 0
+    if not findings:
+        write(_("{name} has no devices").format(name=plain(profile.name)))
+        return 0
+    show(findings, Paint(sys.stdout))
+    if not bad:
+        write(_("every device answers; nothing was moved"))
+        return 0
+    words = ngettext(
+        "{count} device is not ready; nothing was moved", "{count} devices are not ready; nothing was moved", bad
+    )
+    write(words.format(count=bad))
+    return NOT_READY
 
 
 def examine(profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = serial_ports) -> list[Finding]:
@@ -69,7 +107,7 @@ def examine(profile: Profile, find_ports: Callable[[], Sequence[SerialPort]] = s
     for device in (name for name in devices if name in answers):
         where, answer = answers[device].result()
         text = f"{device} {where}".rstrip() + f": {answer.text}"
-        found.append(Finding(f"device.{device}", answer.level, text, answer.fix))
+        found.append(replace(answer, key=f"device.{device}", text=text))
     return found
 
 
@@ -96,7 +134,7 @@ def ask_ports(devices: Mapping[str, Settings], find_ports: Callable[[], Sequence
 
 def _ask_port(
     device: str, settings: Settings, paths: Mapping[str, str], ports: Sequence[SerialPort]
-) -> tuple[str, DeviceAnswer]:
+) -> tuple[str, Finding]:
     path = paths[device]
     twins = [
         other
@@ -108,7 +146,7 @@ def _ask_port(
         return path, bad(_("the same port as {others}").format(others=", ".join(twins)), fix)
     baud = settings.get("baud", BAUD)
     line = opened(device, path, baud if isinstance(baud, int) else BAUD, ports)
-    if isinstance(line, DeviceAnswer):
+    if isinstance(line, Finding):
         return path, line
     with closing(line):
         try:
@@ -120,11 +158,11 @@ def _ask_port(
     if answer.level is Level.OK and lasting:
         text = _("{text}; its name may belong to another device after it is plugged in again")
         fix = _("write {path}").format(path=lasting)
-        return path, DeviceAnswer(Level.WARN, text.format(text=answer.text), fix)
+        return path, warn("", text.format(text=answer.text), fix)
     return path, answer
 
 
-def ask_camera(device: str, settings: Settings) -> tuple[str, DeviceAnswer]:
+def ask_camera(device: str, settings: Settings) -> tuple[str, Finding]:
     """Get a picture from a camera; return its name and the result."""
     source = str(settings.get("source", "0"))
     name = f"/dev/video{int(source)}" if source.isdecimal() else source
@@ -141,21 +179,20 @@ def ask_camera(device: str, settings: Settings) -> tuple[str, DeviceAnswer]:
     return name, _picture(str(path))
 
 
-def _picture(name: str) -> DeviceAnswer:
-    size = _run(python(PICTURE, name)).strip()
+def _picture(name: str) -> Finding:
+    size = _run(child_python(PICTURE, name)).strip()
     if size:
         return good(_("a picture of {size}").format(size=size))
     others = holders(name)
     if others:
-        return held(others)
+        return held(name, others)
     fix = _("is it a video, and does it answer?")
     if name.startswith("/dev/"):
         fix = _("it may be another device of the same camera: v4l2-ctl --list-devices")
     return bad(_("it delivers no picture"), fix)
 
 
-def ask_sound(device: str, settings: Settings) -> tuple[str, DeviceAnswer]:
-    """Look for microphone and loudspeaker."""
+def ask_sound(device: str, settings: Settings) -> tuple[str, Finding]:
     titles = {"microphone": _("microphone"), "speaker": _("loudspeaker")}
     wanted = {setting: str(settings.get(setting, "")) for setting in titles}
     wanted = {setting: name for setting, name in wanted.items() if name != OFF}
@@ -186,7 +223,6 @@ def _is(wanted: str, index: int, name: str) -> bool:
 
 
 def _run(command: Sequence[str]) -> str:
-    """Return what a program prints, nothing if it fails or takes too long."""
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, errors="replace", timeout=WITHIN_S, check=False

@@ -7,42 +7,29 @@ import errno
 import os
 import termios
 import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import serial
 
 from cli.doctor.checks import permission_fix
-from cli.doctor.finding import Level
+from cli.doctor.finding import Finding, fail, ok
 from launcher.profile.serial_choice import how_to_choose
+from launcher.serial_ports import SerialPort
 from text.i18n import _, localized
 from text.sentences import reason_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from launcher.serial_ports import SerialPort
 
 PROC = Path("/proc")
 MASTERS = ("/dev/ptmx", "/dev/pts/ptmx")
 
 
-class DeviceAnswer(NamedTuple):
-    """The result of checking a device."""
-
-    level: Level
-    text: str
-    fix: str = ""
+def good(text: str) -> Finding:
+    return ok("", text)
 
 
-def good(text: str) -> DeviceAnswer:
-    """Return the answer of a device that is as it should be."""
-    return DeviceAnswer(Level.OK, text)
-
-
-def bad(text: str, fix: str) -> DeviceAnswer:
-    """Return what is wrong with a device, and what mends it."""
-    return DeviceAnswer(Level.FAIL, text, fix)
+def bad(text: str, fix: str) -> Finding:
+    return fail("", text, fix)
 
 
 class Holder(NamedTuple):
@@ -61,40 +48,26 @@ def holders(device: str, proc: Path = PROC) -> list[Holder]:
 
     The creator of a pseudo-terminal holds both of its ends and does not block it.
     """
-    wanted = os.path.realpath(device)
-    found = []
+    wanted, found = os.path.realpath(device), []
     for folder in proc.glob("[0-9]*"):
-        pid = int(folder.name)
-        if pid == os.getpid():
-            continue
-        files = _open_files(folder / "fd")
-        if wanted in files and not (wanted.startswith("/dev/pts/") and files & set(MASTERS)):
-            found.append(Holder(pid, _name(folder)))
+        files: set[str] = set()
+        with contextlib.suppress(OSError):  # A process of another user, or one that has ended.
+            for descriptor in (folder / "fd").iterdir():
+                with contextlib.suppress(OSError):  # Closed in the meantime.
+                    files.add(str(descriptor.readlink()))
+        own = int(folder.name) == os.getpid()
+        if not own and wanted in files and not (wanted.startswith("/dev/pts/") and files & set(MASTERS)):
+            found.append(Holder(int(folder.name), _name(folder)))
     return sorted(found)
-
-
-def _open_files(folder: Path) -> set[str]:
-    try:
-        return {path for descriptor in folder.iterdir() if (path := _target(descriptor))}
-    except OSError:
-        return set()  # A process of another user, or one that has ended.
-
-
-def _target(descriptor: Path) -> str:
-    try:
-        return str(descriptor.readlink())
-    except OSError:
-        return ""  # Closed in the meantime.
 
 
 def _name(folder: Path) -> str:
     """Return the name of the process; for a Python node, its title."""
-    try:
+    with contextlib.suppress(OSError):
         words = (folder / "cmdline").read_bytes().split(b"\0")
         name = os.path.basename(words[0].decode(errors="replace"))  # noqa: PTH119
         return name or (folder / "comm").read_text(errors="replace").strip()
-    except OSError:
-        return "?"
+    return "?"
 
 
 BAD = (OSError, termios.error, serial.SerialException, TypeError)
@@ -157,7 +130,7 @@ GONE = (errno.ENOENT, errno.ENXIO, errno.ENODEV)
 
 def opened(
     device: str, path: str, baud: int, ports: Sequence[SerialPort], opening: Callable[[str, int], OpenPort] = OpenPort
-) -> OpenPort | DeviceAnswer:
+) -> OpenPort | Finding:
     """Return the open port of a device, or why not; `ports` lists those that exist."""
     if not os.path.lexists(path):
         return _missing(device, path, ports)
@@ -168,14 +141,14 @@ def opened(
     others = holders(path)
     if others:
         line.close()
-        return _taken(path, others)
+        return held(path, others)
     return line
 
 
-def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPort]) -> DeviceAnswer:
+def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPort]) -> Finding:
     number = _number(error)
     if number in TAKEN:
-        return _taken(path, holders(path))
+        return held(path, holders(path))
     if number in DENIED:
         return bad(_("no permission"), permission_fix(path))
     if number in GONE:
@@ -187,7 +160,7 @@ def _refused(device: str, path: str, error: Exception, ports: Sequence[SerialPor
     return bad(_("cannot be opened: {reason}").format(reason=words), fix)
 
 
-def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswer:
+def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> Finding:
     dangling = os.path.islink(path)  # noqa: PTH114 - a device, not a file
     text = _("it is gone, only its name is left") if dangling else _("there is no such port")
     there = "; ".join(map(str, ports)) or _("none")
@@ -196,15 +169,11 @@ def _missing(device: str, path: str, ports: Sequence[SerialPort]) -> DeviceAnswe
     return bad(text, fix.format(choose=localized(how_to_choose(device))))
 
 
-def _taken(path: str, others: Sequence[Holder]) -> DeviceAnswer:
+def held(path: str, others: Sequence[Holder]) -> Finding:
+    """Return that other programs have a device open, or that some unknown one has."""
     if not others:
         fix = _("close that program; sudo fuser -v {path} shows which it is").format(path=path)
         return bad(_("another program is using it"), fix)
-    return held(others)
-
-
-def held(others: Sequence[Holder]) -> DeviceAnswer:
-    """Return that other programs have a device open."""
     fix = _("close it; if it is a running robot: deck down")
     return bad(_("{names} has it open").format(names=", ".join(map(str, others))), fix)
 

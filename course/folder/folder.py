@@ -10,33 +10,25 @@ import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.lessons.catalog import course_dir
-from course.lessons.lesson import IGNORED
+from course.lessons.lesson import IGNORED, LessonFolder
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.i18n import language
 from text.sentences import say
 
-if TYPE_CHECKING:
-    from course.lessons.lesson import LessonFolder
-
 NAME = re.compile(r"[a-z][a-z0-9_]*")
-NODE = """\
+_NODE = """\
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-
+{imports}
 
 class {class_name}(Node):
     def __init__(self):
         super().__init__("{name}")
-        self.get_logger().info("{name} is on")
-        self.create_timer(1.0, self.tick)
-
-    def tick(self):
-        self.get_logger().info("tick")
+{body}
 
 
 def main(args=None):
@@ -54,6 +46,12 @@ def main(args=None):
 if __name__ == "__main__":
     main()
 """
+_TICKS = """\
+        self.get_logger().info("{name} is on")
+        self.create_timer(1.0, self.tick)
+
+    def tick(self):
+        self.get_logger().info("tick")"""
 PROFILE = """\
 title: {{en: My node, ru: Мой узел}}
 nodes:
@@ -66,6 +64,12 @@ _QUOTED = re.compile('"[^"]*"')
 """Words that the course's nodes know are Russian in every language."""
 _DOCSTRING = re.compile(r'"""([^"а-яё]+\.) ([^"]*[а-яё][^"]*)"""', re.IGNORECASE)
 _LOGGED = re.compile(r'"([^"\n]*)"\)  # ru: ("[^"\n]*")')
+
+
+def node_text(name: str, body: str, imports: str = "") -> str:
+    """Return the program of a node: `body` is what follows in its class after its own name."""
+    class_name = "".join(part.capitalize() for part in name.split("_")) or "MyNode"
+    return _NODE.format(name=name, class_name=class_name, body=body, imports=imports)
 
 
 @dataclass(frozen=True)
@@ -108,7 +112,6 @@ def new_folder(lesson: LessonFolder, *, again: bool = False) -> NewFolder:
 
 
 def _starter(lesson: LessonFolder) -> dict[Path, Path]:
-    """Return the files that a lesson begins with, by their place in the folder."""
     if not lesson.starter.is_dir():
         raise UsageError(say("there is no folder {folder}", folder=str(lesson.starter)))
     sources = [file for file in sorted(lesson.starter.rglob("*")) if file.is_file() and not IGNORED & set(file.parts)]
@@ -203,7 +206,6 @@ def new_node(name: str) -> NewFolder:
         raise UsageError(say("{path} is there already: choose another name", path=str(folder)))
     folder.mkdir(parents=True)
     file, profile = folder / f"{name}.py", folder / FOLDERS_OWN
-    class_name = "".join(part.capitalize() for part in name.split("_")) or "MyNode"
-    file.write_text(NODE.format(name=name, class_name=class_name), "utf-8")
+    file.write_text(node_text(name, _TICKS.format(name=name)), "utf-8")
     profile.write_text(PROFILE.format(name=name), "utf-8")
     return NewFolder(folder, (file, profile), ())

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.folder.folder import folder_of, own_profile
 from course.lessons.catalog import course_dir, lesson_of
-from course.lessons.lesson import folders
+from course.lessons.lesson import LessonFolder, folders
 from launcher.errors import LauncherError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
-
-if TYPE_CHECKING:
-    from course.lessons.lesson import LessonFolder
-    from launcher.profile.model import Profile
-    from launcher.status import NodeStatus, SessionInfo
+from launcher.profile.model import Profile
+from launcher.status import NodeStatus, SessionInfo
 
 OF_DECK = "nodes."
 """What the name of a module of Deck's own nodes begins with."""
@@ -43,7 +39,6 @@ def programs_for(session: SessionInfo, node: NodeStatus) -> list[Path | str | No
 
 
 def _of_deck(lesson: LessonFolder | None, node: str) -> list[str]:
-    """Return Deck's node of this name in a lesson."""
     spec = None if lesson is None else lesson.profile.nodes.get(node)
     run = "" if spec is None else spec.run or ""
     return [run] if run.startswith(OF_DECK) else []

@@ -9,32 +9,28 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
 import signal
 import socket
 import sys
 import time
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import psutil
 
 import course
-from course.grade.limits import descendants, taken
+from course.grade.limits import Taken, descendants
 from course.proof.trial import Places
 from course.results import MOST_BYTES
-from launcher.processes.table import processes, read_marks
+from launcher.processes.table import read_marks
+from launcher.wire import encode
 from text.nested import read_json
 from text.packing import unpack_text
 from text.run_path import OWN_RUN_DIR
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Mapping, Sequence
-
-    from typing_extensions import Self
 
 EXAMINER = (sys.executable, "-m", "course.grade")
 GRACE_S = 15.0
@@ -75,14 +71,6 @@ class ExamRequest:
     bag: str = ""
     """The folder of a recording, which does not exist yet; empty: none is made."""
 
-    def to_json(self) -> str:
-        return json.dumps(asdict(self))
-
-    @classmethod
-    def from_json(cls, line: bytes) -> Self:
-        """Read the output of `to_json`."""
-        return cls(**read_json(line))
-
 
 def own_places(place: Path) -> dict[str, Path]:
     """Return the folders of the judge and of Deck's nodes, by the variables that say so."""
@@ -110,100 +98,94 @@ def environment_of(place: Path, environ: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-class Examination:
-    """One examiner, from start to end, with all that it leaves behind."""
+async def examined(place: Path, request: ExamRequest, room: Sequence[str]) -> AsyncGenerator[dict[str, Any], None]:
+    """Yield what an examiner tells, and `end` in any case; by then nothing of it is left.
 
-    def __init__(self, place: Path, request: ExamRequest, room: Sequence[str]) -> None:
-        """`room`: the beginning of the examiner's command line; none: it is not behind walls."""
-        self.reason = ""
-        """Why it did not come to its end; empty if it did."""
-        self.taken = False
-        """Whether somebody else was in the domain."""
-        self._place = place
-        self._request = request
-        self._room = room
-        self._ended = False
-
-    async def events(self) -> AsyncGenerator[dict[str, Any], None]:
-        """Yield what it tells; afterwards nothing of it is left."""
-        ours, theirs = socket.socketpair()
-        process = await self._start(theirs)
-        theirs.close()
-        reader, writer = await asyncio.open_connection(sock=ours, limit=MOST_BYTES)
-        watching = asyncio.ensure_future(self._watch(process))
-        try:
-            writer.write(self._request.to_json().encode() + b"\n")
-            async for event in self._heard(reader):
-                yield event
-        finally:
-            watching.cancel()
-            writer.close()
-            await asyncio.shield(asyncio.ensure_future(self._end(process)))
-        if not self._ended and not self.reason:
-            self.reason = say("the judge was ended before it was done; killed by what it judged, perhaps")
-
-    async def _start(self, channel: socket.socket) -> asyncio.subprocess.Process:
-        with (self._place / "examiner.log").open("wb") as words:
-            return await asyncio.create_subprocess_exec(
-                *(*self._room, *EXAMINER, str(channel.fileno())),
-                # In that folder `course` is this package, whatever the user's contains.
-                cwd=Path(course.__file__).parent.parent,
-                stdin=asyncio.subprocess.DEVNULL,
-                stdout=words,
-                stderr=words,
-                env=environment_of(self._place, os.environ),
-                pass_fds=(channel.fileno(),),
-                # Ctrl-C in the terminal is meant for its grader.
-                start_new_session=True,
-            )
-
-    async def _heard(self, reader: asyncio.StreamReader) -> AsyncIterator[dict[str, Any]]:
-        while not self._ended:
-            try:
-                line = await reader.readline()
-                event = read_json(line)
-            except (OSError, ValueError):
-                return
+    `room`: the beginning of the examiner's command line; none: it is not behind walls.
+    """
+    ours, theirs = socket.socketpair()
+    process = await _started(place, theirs, room)
+    theirs.close()
+    reader, writer = await asyncio.open_connection(sock=ours, limit=MOST_BYTES)
+    excess = _Excess()
+    watching = asyncio.ensure_future(excess.watch(process, place, request))
+    end: dict[str, Any] = {"event": "end", "taken": False}
+    reason: str = say("the judge was ended before it was done; killed by what it judged, perhaps")
+    try:
+        writer.write(encode(asdict(request)))
+        async for event in _heard(reader):
             if event["event"] == "end":
-                self._ended = True
-                self.reason = self.reason or unpack_text(event["reason"])
-                self.taken = event["taken"]
-            else:
-                yield event
+                end, reason = event, unpack_text(event["reason"])
+                break
+            yield event
+    finally:
+        watching.cancel()
+        writer.close()
+        await asyncio.shield(asyncio.ensure_future(_end(process, place)))
+    yield {**end, "reason": excess.words or reason}
 
-    async def _watch(self, process: asyncio.subprocess.Process) -> None:
-        """End it when it takes too much of anything."""
-        deadline_s = time.monotonic() + self._request.within_s + GRACE_S
-        places = Places(self._place, Path(self._request.lesson).name).writable
+
+async def _started(place: Path, channel: socket.socket, room: Sequence[str]) -> asyncio.subprocess.Process:
+    with (place / "examiner.log").open("wb") as words:
+        return await asyncio.create_subprocess_exec(
+            *(*room, *EXAMINER, str(channel.fileno())),
+            # In that folder `course` is this package, whatever the user's contains.
+            cwd=Path(course.__file__).parent.parent,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=words,
+            stderr=words,
+            env=environment_of(place, os.environ),
+            pass_fds=(channel.fileno(),),
+            # Ctrl-C in the terminal is meant for its grader.
+            start_new_session=True,
+        )
+
+
+async def _heard(reader: asyncio.StreamReader) -> AsyncIterator[dict[str, Any]]:
+    with contextlib.suppress(OSError, ValueError):
+        while line := await reader.readline():
+            yield read_json(line)
+
+
+class _Excess:
+    """What an examiner or what it has started takes too much of."""
+
+    words = ""
+
+    async def watch(self, process: asyncio.subprocess.Process, place: Path, request: ExamRequest) -> None:
+        """End it when it does."""
+        deadline_s = time.monotonic() + request.within_s + GRACE_S
+        places = Places(place, Path(request.lesson).name).writable
         while process.returncode is None:
             await asyncio.sleep(LOOK_EVERY_S)
-            excess = (await asyncio.to_thread(taken, process.pid, places)).excess()
+            words = (await asyncio.to_thread(Taken, process.pid, places)).excess()
             if time.monotonic() > deadline_s:
-                excess = say("it took longer than {n:g} s", n=self._request.within_s)
-            if excess:
-                self.reason = excess
+                words = say("it took longer than {n:g} s", n=request.within_s)
+            if words:
+                self.words = words
                 await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
                 return
 
-    async def _end(self, process: asyncio.subprocess.Process) -> None:
-        """Return when it and all that it started is gone."""
-        with contextlib.suppress(asyncio.TimeoutError):
-            await asyncio.wait_for(process.wait(), ENDED_WITHIN_S)
-        if process.returncode is None:
-            await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
-            process.kill()
-            await process.wait()
-        # What has ended the guardian, without walls.
-        await asyncio.to_thread(_kill_all, lambda: _marked(str(self._place / "run")))
+
+async def _end(process: asyncio.subprocess.Process, place: Path) -> None:
+    """Return when it and all that it started is gone."""
+    with contextlib.suppress(asyncio.TimeoutError):
+        await asyncio.wait_for(process.wait(), ENDED_WITHIN_S)
+    if process.returncode is None:
+        await asyncio.to_thread(_kill_all, lambda: descendants(process.pid))
+        process.kill()
+        await process.wait()
+    # What has ended the guardian, without walls.
+    await asyncio.to_thread(_kill_all, lambda: _marked(str(place / "run")))
 
 
 def _marked(run_dir: str) -> list[psutil.Process]:
     """Return all that has this run directory in its environment."""
     found = []
-    for each in processes():
-        if not each.zombie and (read_marks(each.pid) or {}).get(OWN_RUN_DIR) == run_dir:
+    for pid in psutil.pids():
+        if (read_marks(pid) or {}).get(OWN_RUN_DIR) == run_dir:
             with contextlib.suppress(psutil.NoSuchProcess):
-                found.append(psutil.Process(each.pid))
+                found.append(psutil.Process(pid))
     return found
 
 

@@ -7,35 +7,35 @@ import hashlib
 import shutil
 import tempfile
 import time
+from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import aclosing
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from course.folder.folder import in_language
-from course.grade.examination import Examination, ExamRequest, own_places
+from course.grade.examination import ExamRequest, examined, own_places
 from course.grade.grades import Grade, StepGrade, filled_up
 from course.grade.limits import remove_tree
-from course.grade.submission import Files, Submission, UnreadableError, check_gradable, files_of
+from course.grade.submission import Files, Submission, check_gradable, files_of
 from course.grade.walls import cell, room
+from course.lessons.lesson import LessonFolder
 from course.proof.trial import Places, unused_domains
-from course.results import State, unpack_step
+from course.results import State, StepResult
+from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.steps.draw import LARGEST_SEED
+from launcher.wire import unpack
 from text.i18n import LANGUAGES
 from text.packing import unpack_text
-from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Callable, Sequence
-
-    from course.lessons.lesson import LessonFolder
+from text.sentences import reason_of, say
 
 WITHIN_S = 180.0
 """How long one folder may take."""
 ATTEMPTS = 3
 """In how many domains it is tried, if somebody else is in the first."""
+BAG = Path("own", "bag")
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ async def grade_all(
         async with space:
             if not isinstance(files, Files):
                 return number, _not_graded(terms, submission, files)
-            return number, await _Grading(terms, submission, (starter, files), free, on_step, apart).grade()
+            return number, await _Grading(terms, submission, starter, files, free, on_step, apart).grade()
 
     tasks = [asyncio.ensure_future(one(number)) for number in range(len(chosen))]
     try:
@@ -113,8 +113,8 @@ def seed_of(files: Files) -> int:
 def _read(folder: Path) -> Files | str:
     try:
         return Files.read(folder)
-    except UnreadableError as error:
-        return error.words
+    except UsageError as error:
+        return reason_of(error)
 
 
 def _not_graded(terms: Terms, submission: Submission, reason: str) -> Grade:
@@ -123,142 +123,118 @@ def _not_graded(terms: Terms, submission: Submission, reason: str) -> Grade:
     return Grade(terms.lesson, submission.student, submission.folder, steps, began, reason=reason)
 
 
+@dataclass
 class _Grading:
     """The grading of one folder."""
 
-    def __init__(
-        self,
-        terms: Terms,
-        submission: Submission,
-        files: tuple[Files, Files],
-        domains: asyncio.Queue[int],
-        on_step: Callable[[Submission, StepGrade], object],
-        apart: Sequence[Path],
-    ) -> None:
-        """`files`: those of the starter and the learner; `apart`: the folders of all learners, hidden from each."""
-        self._apart = apart
-        self._terms = terms
-        self._submission = submission
-        self._starter, self._files = files
-        self._domains = domains
-        self._on_step = on_step
-        self._seed = terms.seed or seed_of(self._files)
-        self._began_s = time.monotonic()
-        self._grade = Grade(
-            terms.lesson,
-            submission.student,
-            submission.folder,
-            (),
-            datetime.now(timezone.utc),
-            notes=tuple(self._remarks()),
-        )
+    terms: Terms
+    submission: Submission
+    starter: Files
+    files: Files
+    domains: asyncio.Queue[int]
+    """Those in which nobody is graded."""
+    on_step: Callable[[Submission, StepGrade], object]
+    apart: Sequence[Path]
+    """The folders of all learners, hidden from each."""
 
-    def _missing(self) -> list[str]:
-        names = files_of(self._terms.lesson)
-        return [name for name in names if Path(name) not in self._files.contents]
+    def __post_init__(self) -> None:
+        self._names = files_of(self.terms.lesson)
+        self._missing = [name for name in self._names if Path(name) not in self.files.contents]
+        self._seed = self.terms.seed or seed_of(self.files)
+        self._grade = replace(_not_graded(self.terms, self.submission, ""), steps=(), notes=self._remarks())
 
-    def _remarks(self) -> list[str]:
+    def _remarks(self) -> tuple[str, ...]:
         """Return what its teacher should know of the folder."""
         notes: list[str] = []
-        missing = self._missing()
-        if missing:
-            notes.append(
-                say(
-                    "not in the folder: {files}; the lesson's own beginning of it was judged",
-                    files=", ".join(missing),
-                )
-            )
-        own = self._files.contents.get(Path(FOLDERS_OWN))
-        given = self._starter.contents[Path(FOLDERS_OWN)]
+        if self._missing:
+            names = ", ".join(self._missing)
+            notes.append(say("not in the folder: {files}; the lesson's own beginning of it was judged", files=names))
+        own = self.files.contents.get(Path(FOLDERS_OWN))
+        given = self.starter.contents[Path(FOLDERS_OWN)]
         if own not in (None, given, *(in_language(given, code) for code in LANGUAGES)):
             notes.append(say("the folder's {file} was not used, but the lesson's own", file=FOLDERS_OWN))
-        return notes
+        return tuple(notes)
 
     async def grade(self) -> Grade:
         """Grade it; whatever happens, the result is a grade."""
-        names = files_of(self._terms.lesson)
-        if names and len(self._missing()) == len(names):
-            reason = say("none of the lesson's files is there: {files}", files=", ".join(names))
-            steps = filled_up(self._terms.lesson, (), State.FAILED, reason)
+        began_s = time.monotonic()
+        if self._names and self._missing == self._names:
+            reason = say("none of the lesson's files is there: {files}", files=", ".join(self._names))
+            steps = filled_up(self.terms.lesson, (), State.FAILED, reason)
             for step in steps:
-                self._on_step(self._submission, step)
+                self.on_step(self.submission, step)
             return replace(self._grade, steps=steps, notes=())
-        for attempt in range(1, ATTEMPTS + 1):
-            domain = await self._domains.get()
+        for _attempt in range(ATTEMPTS):
+            domain = await self.domains.get()
             try:
-                grade, again = await self._in_domain(domain)
+                again = await self._in_domain(domain)
             finally:
-                self._domains.put_nowait(domain)
-            if not again or attempt == ATTEMPTS:
+                self.domains.put_nowait(domain)
+            if not again:
                 break
-        return replace(grade, seconds=time.monotonic() - self._began_s)
+        why = self._grade.reason or say("it was not judged")
+        steps = filled_up(self.terms.lesson, self._grade.steps, State.UNJUDGED, why)
+        return replace(self._grade, steps=steps, seed=self._seed, seconds=time.monotonic() - began_s)
 
-    async def _in_domain(self, domain: int) -> tuple[Grade, bool]:
-        """Grade it in this domain; also return whether somebody else is there."""
+    async def _in_domain(self, domain: int) -> bool:
+        """Grade it in this domain; return whether somebody else is there."""
+        terms, taken = self.terms, False
         place = Path(await asyncio.to_thread(tempfile.mkdtemp, prefix="deck-grade-"))
         try:
             request = self._prepared(place, domain)
-            bwrap = self._terms.bubblewrap
-            walls = room(bwrap, self._terms.lesson, place, self._apart) if bwrap else ()
-            examination = Examination(place, request, walls)
-            async with aclosing(examination.events()) as events:
+            walls = room(terms.bubblewrap, terms.lesson, place, self.apart) if terms.bubblewrap else ()
+            async with aclosing(examined(place, request, walls)) as events:
                 async for event in events:
                     self._take(event)
-            steps = filled_up(
-                self._terms.lesson, self._grade.steps, State.UNJUDGED, examination.reason or say("it was not judged")
-            )
+                    taken = event.get("taken", False)
             await asyncio.to_thread(self._keep_bag, place)
-            grade = replace(self._grade, steps=steps, seed=self._seed, reason=examination.reason)
-            return grade, examination.taken and not self._grade.steps
+            return taken and not self._grade.steps
         finally:
             await asyncio.to_thread(remove_tree, place)
 
     def _prepared(self, place: Path, domain: int) -> ExamRequest:
-        lesson = self._terms.lesson
-        places = Places(place, lesson.name)
+        terms = self.terms
+        places = Places(place, terms.lesson.name)
         places.make()
         for own in own_places(place).values():
             own.mkdir(parents=True)
-        self._starter.write(places.files)
-        self._files.write(places.files, without=[FOLDERS_OWN])
+        self.starter.write(places.files)
+        self.files.write(places.files, without=FOLDERS_OWN)
         return ExamRequest(
-            lesson=str(lesson.path),
+            lesson=str(terms.lesson.path),
             place=str(place),
-            cell=cell(self._terms.bubblewrap, place, places.writable) if self._terms.bubblewrap else (),
+            cell=cell(terms.bubblewrap, place, places.writable) if terms.bubblewrap else (),
             domain=domain,
             seed=self._seed,
-            within_s=self._terms.within_s,
-            language=self._terms.language,
-            bag=str(_bag_in(place)) if self._terms.bags is not None else "",
+            within_s=terms.within_s,
+            language=terms.language,
+            bag="" if terms.bags is None else str(place / BAG),
         )
 
     def _keep_bag(self, place: Path) -> None:
         """Move the recording to where it was asked for: an examiner writes nowhere else."""
-        made = _bag_in(place)
-        if self._terms.bags is None or not made.is_dir():
+        if self.terms.bags is None or not (place / BAG).is_dir():
             return
-        folder = self._terms.bags.absolute() / self._submission.student.replace("/", "-")
+        folder = self.terms.bags.absolute() / self.submission.student.replace("/", "-")
         shutil.rmtree(folder, ignore_errors=True)  # Of an attempt in another domain
         folder.parent.mkdir(parents=True, exist_ok=True)
-        shutil.move(made, folder)
+        shutil.move(place / BAG, folder)
         self._grade = replace(self._grade, bag=folder)
 
     def _take(self, event: dict[str, Any]) -> None:
+        grade = self._grade
         if event["event"] == "values":
-            self._grade = replace(self._grade, values=event["values"])
+            self._grade = replace(grade, values=event["values"])
         elif event["event"] == "note":
-            self._grade = replace(self._grade, notes=(*self._grade.notes, unpack_text(event["words"])))
-        elif event["event"] == "step":
-            result = unpack_step(event["step"])
-            document = next(step for step in self._terms.lesson.steps if step.id == result.id)
-            known = {one.step.id: one for one in self._grade.steps}
+            self._grade = replace(grade, notes=(*grade.notes, unpack_text(event["words"])))
+        elif event["event"] == "end":
+            self._grade = replace(grade, reason=event["reason"])
+        else:
+            result = unpack(StepResult, event["step"])
+            document = next(step for step in self.terms.lesson.steps if step.id == result.id)
+            known = {one.step.id: one for one in grade.steps}
             # One that is reported again has been judged before; something was found out since.
-            before = known.get(result.id)
-            seconds = before.seconds if before is not None else float(event["seconds"])
+            seconds = known[result.id].seconds if result.id in known else float(event["seconds"])
             known[result.id] = StepGrade(document, result, seconds)
-            self._grade = replace(self._grade, steps=tuple(known.values()))
-            self._on_step(self._submission, known[result.id])
-
-
-def _bag_in(place: Path) -> Path:
-    return place / "own" / "bag"
+            self._grade = replace(grade, steps=tuple(known.values()))
+            self.on_step(self.submission, known[result.id])

@@ -5,18 +5,15 @@ from __future__ import annotations
 import os
 import resource
 import stat
+import subprocess
+from collections import defaultdict
+from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import psutil
 
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
 
 FILE_BYTES = 256 << 20
 """Largest file that any of its processes can write, a recording included."""
@@ -52,27 +49,34 @@ def limit_this_process(longest_s: float) -> None:
 
 def _tasks_of_user() -> int:
     """Count the threads of this user, which is what the kernel limits."""
-    return sum(map(_tasks, psutil.pids()))
+    found = 0
+    for pid in psutil.pids():
+        with suppress(OSError):
+            if Path(f"/proc/{pid}").stat().st_uid == os.getuid():
+                found += len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208
+    return found
 
 
-def _tasks(pid: int) -> int:
-    """Return how many threads a process has; none if it is another user's, or gone."""
-    with suppress(OSError):
-        if Path(f"/proc/{pid}").stat().st_uid == os.getuid():
-            return len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208
-    return 0
-
-
-@dataclass(frozen=True)
 class Taken:
-    """What is taken at the moment."""
+    """What a process, all that descend from it, and some folders take at the moment; each file counts once."""
 
-    processes: int
-    memory_bytes: int
-    disk_bytes: int
-    files: int = 0
-    unseen: str = ""
-    """A folder that cannot be looked into."""
+    def __init__(self, pid: int, places: Iterable[Path]) -> None:
+        self._sizes: dict[tuple[int, int], int] = {}
+        """By device and number."""
+        self._unseen = ""
+        """A folder that cannot be looked into."""
+        family = [one.pid for one in descendants(pid)]
+        for place in places:
+            self._look_through(place)
+        for one in family:
+            self._add_removed(one)
+        self.processes = len(family)
+        # What is read from files does not count.
+        self.memory_bytes = sum(_sum_of(f"/proc/{one}/status", "RssAnon", "RssShmem") for one in family)
+        if self.memory_bytes > MEMORY_BYTES:
+            # What they share counts once; takes longer (proc(5), Linux 5.4).
+            self.memory_bytes = sum(_sum_of(f"/proc/{one}/smaps_rollup", "Pss_Anon", "Pss_Shmem") for one in family)
+        self.disk_bytes = sum(self._sizes.values())
 
     def excess(self) -> str:
         """Say which limit is exceeded; empty if none is."""
@@ -82,76 +86,16 @@ class Taken:
             return say("it took more than {gb} GB of memory", gb=MEMORY_BYTES >> 30)
         if self.disk_bytes > DISK_BYTES:
             return say("it wrote more than {mb} MB", mb=DISK_BYTES >> 20)
-        if self.files > FILES:
+        if len(self._sizes) > FILES:
             return say("it made more than {n} files", n=FILES)
-        if self.unseen:
-            return say("it made a folder that cannot be looked into: {folder}", folder=self.unseen[:200])
+        if self._unseen:
+            return say("it made a folder that cannot be looked into: {folder}", folder=self._unseen[:200])
         return ""
 
-
-def descendants(pid: int) -> list[psutil.Process]:
-    """Return the living processes that descend from one, without that one."""
-    try:
-        found = psutil.Process(pid).children(recursive=True)
-    except psutil.NoSuchProcess:
-        return []
-    return [each for each in found if _lives(each)]
-
-
-def _lives(process: psutil.Process) -> bool:
-    try:
-        return process.status() != psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return False
-
-
-def taken(pid: int, places: Iterable[Path]) -> Taken:
-    """Return what a process, all that descend from it, and some folders take."""
-    family = descendants(pid)
-    found = _Found()
-    for place in places:
-        found.look_through(place)
-    for one in family:
-        found.add_removed(one.pid)
-    memory_bytes = sum(_memory_bytes(one.pid) for one in family)
-    if memory_bytes > MEMORY_BYTES:
-        # What they share counts once.
-        memory_bytes = sum(_share_bytes(one.pid) for one in family)
-    return Taken(len(family), memory_bytes, sum(found.sizes.values()), len(found.sizes), found.unseen)
-
-
-def _memory_bytes(pid: int) -> int:
-    """Return what a process has in memory, but for what is read from files."""
-    return _sum_of(f"/proc/{pid}/status", "RssAnon", "RssShmem")
-
-
-def _share_bytes(pid: int) -> int:
-    """Return its part of that; takes longer (smaps_rollup of proc(5), Linux 5.4)."""
-    return _sum_of(f"/proc/{pid}/smaps_rollup", "Pss_Anon", "Pss_Shmem")
-
-
-def _sum_of(path: str, *names: str) -> int:
-    """Add fields of a file in /proc, which are in kB; 0 of a process that is gone."""
-    try:
-        with open(path, encoding="utf-8", errors="replace") as file:  # noqa: PTH123 - as all of /proc
-            fields = dict(line.split(":", 1) for line in file if ":" in line)
-        return sum(int(fields[name].split()[0]) << 10 for name in names if name in fields)
-    except (OSError, ValueError):
-        return 0
-
-
-class _Found:
-    """The files of some folders and processes, each counted once."""
-
-    def __init__(self) -> None:
-        self.sizes: dict[tuple[int, int], int] = {}
-        """By device and number."""
-        self.unseen = ""
-
-    def look_through(self, folder: Path) -> None:
+    def _look_through(self, folder: Path) -> None:
         """Add all that is in a folder, as far as is allowed to be there."""
         waiting = [(str(folder), 0)]
-        while waiting and len(self.sizes) <= FILES and not self.unseen:
+        while waiting and len(self._sizes) <= FILES and not self._unseen:
             place, depth = waiting.pop()
             try:
                 with os.scandir(place) as entries:
@@ -162,11 +106,11 @@ class _Found:
             except (FileNotFoundError, NotADirectoryError):
                 continue
             except OSError:
-                self.unseen = place
+                self._unseen = place
             if depth > DEEPEST:
-                self.unseen = place
+                self._unseen = place
 
-    def add_removed(self, pid: int) -> None:
+    def _add_removed(self, pid: int) -> None:
         """Add the files that a process has open and that are in no folder any more."""
         try:
             opened = os.listdir(f"/proc/{pid}/fd")  # noqa: PTH208
@@ -179,42 +123,48 @@ class _Found:
                     self._add(seen)
 
     def _add(self, seen: os.stat_result) -> None:
-        self.sizes[seen.st_dev, seen.st_ino] = seen.st_blocks * 512
+        self._sizes[seen.st_dev, seen.st_ino] = seen.st_blocks * 512
+
+
+def descendants(pid: int) -> list[psutil.Process]:
+    """Return the living processes that descend from one, without that one.
+
+    Not by `psutil.Process.children`, which gives up where /proc keeps others' processes to itself (hidepid=1).
+    """
+    children: defaultdict[int, list[psutil.Process]] = defaultdict(list)
+    for each in psutil.process_iter(["ppid"]):
+        children[each.info["ppid"]].append(each)
+    parents, found = [pid], list[psutil.Process]()
+    for parent in parents:
+        born = children.pop(parent, [])
+        parents += [each.pid for each in born]
+        found += filter(_lives, born)
+    return found
+
+
+def _lives(process: psutil.Process) -> bool:
+    """Whether it has not ended; one whose first thread alone has ended looks so, but for its threads."""
+    try:
+        return process.status() != psutil.STATUS_ZOMBIE or process.num_threads() > 1
+    except psutil.Error:
+        return False
+
+
+def _sum_of(path: str, *names: str) -> int:
+    """Add fields of a file in /proc, which are in kB; 0 of a process that is gone."""
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:  # noqa: PTH123 - as all of /proc
+            fields = dict(line.split(":", 1) for line in file if ":" in line)
+        return sum(int(fields[name].split()[0]) << 10 for name in names if name in fields)
+    except (OSError, ValueError):
+        return 0
 
 
 def remove_tree(root: Path) -> None:
     """Remove a folder and all in it, nested as deep and closed as it may be; nobody may work in it any more.
 
-    `shutil.rmtree` calls itself for each folder, and gives up at those that may not be read. Here, a folder within
-    another is moved up to the root first, so that no path becomes long.
+    `shutil.rmtree` calls itself for each folder, and gives up at those that may not be read.
     """
-    _open_up(str(root))
-    numbers = count()
-    folders = [str(root)]
-    # The list grows meanwhile.
-    for folder in folders:
-        folders += _emptied(folder, root, numbers)
-    for folder in reversed(folders):
-        with suppress(OSError):
-            os.rmdir(folder)  # noqa: PTH106
-
-
-def _emptied(folder: str, root: Path, numbers: Iterator[int]) -> list[str]:
-    """Remove the files of a folder, and move its folders up; return where those are now."""
-    moved = []
-    with suppress(OSError):
-        for entry in list(os.scandir(folder)):
-            with suppress(OSError):
-                if not entry.is_dir(follow_symlinks=False):
-                    os.unlink(entry.path)  # noqa: PTH108
-                    continue
-                _open_up(entry.path)
-                target = f"{root}/.removed-{os.getpid()}-{next(numbers)}"
-                os.rename(entry.path, target)  # noqa: PTH104
-                moved.append(target)
-    return moved
-
-
-def _open_up(folder: str) -> None:
-    with suppress(OSError):
-        os.chmod(folder, 0o700)  # noqa: PTH101
+    closed = ("-type", "d", "!", "-perm", "-700", "-execdir", "chmod", "700", "{}", ";")
+    for command in (("find", str(root), *closed), ("rm", "-rf", "--", str(root))):
+        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)

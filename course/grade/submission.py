@@ -8,33 +8,20 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.lessons.lesson import IGNORED
+from course.lessons.lesson import IGNORED, LessonFolder
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from course.lessons.lesson import LessonFolder
 
 MOST_FILES = 2000
 MOST_BYTES = 64_000_000
 """Most of what is read of a folder, in all."""
 NOT_READ = {*IGNORED, "node_modules", "venv"}
 """Folders that are never a learner's own work; those that begin with a dot are not read either."""
-
-
-class UnreadableError(Exception):
-    """A folder cannot be read; `words` says why."""
-
-    def __init__(self, words: str) -> None:
-        super().__init__(words)
-        self.words = words
 
 
 @dataclass(frozen=True)
@@ -47,7 +34,7 @@ class Files:
 
     @classmethod
     def read(cls, folder: Path) -> Files:
-        """Read a folder. Raises UnreadableError."""
+        """Read a folder. Raises UsageError."""
         contents: dict[Path, bytes] = {}
         size = 0
         try:
@@ -55,34 +42,25 @@ class Files:
                 data = _content(path, MOST_BYTES - size)
                 size += len(data)
                 if len(contents) == MOST_FILES or size > MOST_BYTES:
-                    raise UnreadableError(
-                        say(
-                            "{folder} holds more than {n} files or {mb} MB: is it the right one?",
-                            folder=str(folder),
-                            n=MOST_FILES,
-                            mb=MOST_BYTES // 1_000_000,
-                        )
+                    words = say(
+                        "{folder} holds more than {n} files or {mb} MB: is it the right one?",
+                        folder=str(folder),
+                        n=MOST_FILES,
+                        mb=MOST_BYTES // 1_000_000,
                     )
+                    raise UsageError(words)
                 contents[path.relative_to(folder)] = data
         except OSError as error:
-            raise UnreadableError(
-                say(
-                    "{path} cannot be read: {why}",
-                    path=str(error.filename or folder),
-                    why=error.strerror or str(error),
-                )
-            ) from error
+            at, why = str(error.filename or folder), error.strerror or str(error)
+            raise UsageError(say("{path} cannot be read: {why}", path=at, why=why)) from error
         return cls(folder, contents)
 
-    def write(self, folder: Path, without: Iterable[str] = ()) -> None:
+    def write(self, folder: Path, *, without: str = "") -> None:
         """Write them into another folder, over what is there."""
-        left_out = set(without)
         for name, data in self.contents.items():
-            if str(name) in left_out:
-                continue
-            target = folder / name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(data)
+            if str(name) != without:
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                (folder / name).write_bytes(data)
 
 
 def _files(folder: Path) -> Iterator[Path]:

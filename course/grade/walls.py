@@ -14,20 +14,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import course
 from course.grade.limits import IN_MEMORY_BYTES
+from course.lessons.lesson import LessonFolder
 from launcher.errors import LauncherError
 from launcher.node_program import INSTALLATION
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from course.lessons.lesson import LessonFolder
 
 HIDDEN = ("/tmp", "/var/tmp", "/run")
 """Empty inside, as is the home: where programs have their sockets."""

@@ -1,6 +1,6 @@
 """The judge as a process of its own: `python -m course.judge`, started by `course.judging`.
 
-What it hears and says is in `course.results`. It ends with its standard input, with the session
+What it hears and says is in `course.judging`. It ends with its standard input, with the session
 that it judges, or by `quit`. A learner's node that floods its topics, or a function of a lesson
 that never returns, holds up this process and no screen.
 """
@@ -8,25 +8,21 @@ that never returns, holds up this process and no screen.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import os
 import sys
+from contextlib import aclosing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from course.judge.judge import judging
+from course.judge.judge import Judge, judging
+from course.judging import JudgeEnded, JudgeEvent, ValuesDrawn, packed
 from course.lessons.lesson import LessonFolder
-from course.results import MOST_BYTES, State, StepResult, pack_step
+from course.results import MOST_BYTES, State, StepResult
 from launcher.client.client import attach
 from launcher.errors import LauncherError
 from launcher.profile.steps.draw import new_seed
-from launcher.wire import encode
 from text.nested import read_json
-from text.packing import pack_text
 from text.sentences import reason_of
-
-if TYPE_CHECKING:
-    from course.judge.judge import Judge
 
 
 class JudgeServer:
@@ -45,25 +41,19 @@ class JudgeServer:
             return
         try:
             client = await attach(start["run"])
+            async with aclosing(client):
+                seed = start["seed"] or new_seed()
+                async with judging(LessonFolder(Path(start["lesson"])), client, seed) as judge:
+                    self._passed = [
+                        StepResult(step.id, State.PASSED, step.points)
+                        for step in judge.steps.values()
+                        if step.id in start["passed"]
+                    ]
+                    self._tell(ValuesDrawn(seed, dict(judge.evidence.values)))
+                    await self._judge(judge)
+                self._tell(JudgeEnded(judge.evidence.ended))
         except LauncherError as error:
-            self._tell(event="end", reason=pack_text(reason_of(error)))
-            return
-        try:
-            lesson = LessonFolder(Path(start["lesson"]))
-            seed = start["seed"] or new_seed()
-            async with judging(lesson, client, seed) as judge:
-                self._passed = [
-                    StepResult(step.id, State.PASSED, step.points)
-                    for step in judge.steps.values()
-                    if step.id in start["passed"]
-                ]
-                self._tell(event="values", seed=seed, values=dict(judge.evidence.values))
-                await self._judge(judge)
-            self._tell(event="end", reason=pack_text(judge.evidence.ended))
-        except LauncherError as error:
-            self._tell(event="end", reason=pack_text(reason_of(error)))
-        finally:
-            await client.aclose()
+            self._tell(JudgeEnded(reason_of(error)))
 
     async def _judge(self, judge: Judge) -> None:
         """Judge the step that was last asked for, until there is nobody left to ask or judge."""
@@ -91,10 +81,10 @@ class JudgeServer:
             return
         waits = judge.waits(step, self._passed)
         if waits is not None:
-            self._tell(event="step", step=pack_step(waits))
+            self._tell(waits)
             return
         async for result in judge.watch(id_):
-            self._tell(event="step", step=pack_step(result))
+            self._tell(result)
             if result.state is State.PASSED:
                 self._passed.append(result)
 
@@ -107,10 +97,10 @@ class JudgeServer:
             return None
         return request
 
-    def _tell(self, **message: object) -> None:
+    def _tell(self, event: JudgeEvent) -> None:
         """Say something; whoever has gone need not hear it."""
-        with contextlib.suppress(OSError):
-            data = encode(message)
+        with suppress(OSError):
+            data = packed(event)
             while data:
                 data = data[os.write(self._out, data) :]
 
@@ -119,7 +109,7 @@ async def _end(task: asyncio.Task[None] | None) -> None:
     if task is None:
         return
     task.cancel()
-    with contextlib.suppress(asyncio.CancelledError):
+    with suppress(asyncio.CancelledError):
         await task
 
 

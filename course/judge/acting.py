@@ -7,22 +7,15 @@ import contextlib
 import os
 import signal
 import time
-from typing import TYPE_CHECKING
 
-from course.judge.evidence import MET, Observation, missed
+from course.judge.evidence import MET, Evidence, Observation, missed
 from course.judge.fields import FieldMissingError, differs, field_at, shown
-from course.judge.missing import dead_nodes
-from graph.data import GoalStatus
+from course.judge.looking import but, dead_nodes
+from graph.data import Goal, GoalStatus, ParameterRow, Value
 from graph.observer.requests import CallService, CancelGoal, ForgetGoal, ReadParameters, SendGoal, SetParameters
-from launcher.status import NodeState
+from launcher.profile.steps.checks import ActionCheck, NodeCheck, ParameterCheck, ServiceCheck
+from launcher.status import NodeState, NodeStatus
 from text.sentences import reason_of, say
-from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from course.judge.evidence import Evidence
-    from graph.data import Goal, ParameterRow
-    from launcher.profile.steps.checks import ActionCheck, NodeCheck, ParameterCheck, ServiceCheck
-    from launcher.status import NodeStatus
 
 NOTICED_S = 6.0
 """How long a service or an action may take to be discovered."""
@@ -37,40 +30,29 @@ KILLED_AFTER_S = 12.0
 
 
 async def service(check: ServiceCheck, evidence: Evidence) -> Observation:
-    """A service answers as it should."""
-    there = await evidence.until(lambda: _served(check.service, check.type, evidence), NOTICED_S)
+    name = "/" + check.service.lstrip("/")
+
+    def served() -> Observation:
+        row = next((row for row in evidence.update.services if row.name == name), None)
+        if row is not None:
+            return _of_type(name, row.type_names, check.type)
+        others = (row.name for row in evidence.update.services if "parameter" not in row.name)
+        seen = but(say("there is no service {service}", service=name), name, others)
+        return missed(seen, dead_nodes(evidence) or say("Is create_service called in __init__?"))
+
+    there = await evidence.until(served, NOTICED_S)
     if not there.met:
         return there
-    result = await asyncio.wrap_future(
-        evidence.observer.ask(CallService(check.service, check.type, check.request, check.within))
-    )
+    result = await evidence.ask(CallService(check.service, check.type, check.request, check.within))
     if not result.ok or result.response is None:
-        return missed(
-            result.error,
-            dead_nodes(evidence) or say("Does the callback return the response, and does it not wait for too long?"),
-        )
+        look = say("Does the callback return the response, and does it not wait for too long?")
+        return missed(result.error, dead_nodes(evidence) or look)
     if not differs(check.response, result.response, check.tolerance):
         return MET
-    return missed(
-        say(
-            "{service} was asked {request} and answered {response}",
-            service=check.service,
-            request=shown(check.request),
-            response=shown(result.response),
-        )
-    )
-
-
-def _served(name: str, type_name: str, evidence: Evidence) -> Observation:
-    wanted = "/" + name.lstrip("/")
-    row = next((row for row in evidence.update.services if row.name == wanted), None)
-    if row is not None:
-        return _of_type(wanted, row.type_names, type_name)
-    meant = nearest(wanted, [row.name for row in evidence.update.services if "parameter" not in row.name])
-    seen = say("there is no service {service}", service=wanted)
-    if meant:
-        seen = say("there is no service {service}, but {meant}", service=wanted, meant=meant)
-    return missed(seen, dead_nodes(evidence) or say("Is create_service called in __init__?"))
+    asked, response = shown(check.request), shown(result.response)
+    words = say("{service} was asked {request} and answered {response}", service=check.service, request=asked,
+                response=response)  # fmt: skip
+    return missed(words)
 
 
 def _of_type(name: str, found: tuple[str, ...], wanted: str) -> Observation:
@@ -81,13 +63,20 @@ def _of_type(name: str, found: tuple[str, ...], wanted: str) -> Observation:
 
 
 async def action(check: ActionCheck, evidence: Evidence) -> Observation:
-    """An action carries a goal out, refuses it, or lets go of it."""
     name = "/" + check.action.lstrip("/")
-    there = await evidence.until(lambda: _offered(name, check.type, evidence), NOTICED_S)
+
+    def offered() -> Observation:
+        row = next((row for row in evidence.update.actions if row.name == name), None)
+        if row is not None and row.servers:
+            return _of_type(name, row.type_names, check.type)
+        look = dead_nodes(evidence) or say("Is the ActionServer made in __init__?")
+        return missed(say("there is no action {action}", action=name), look)
+
+    there = await evidence.until(offered, NOTICED_S)
     if not there.met:
         return there
     try:
-        number = await asyncio.wrap_future(evidence.observer.ask(SendGoal(name, check.type, check.goal)))
+        number = await evidence.ask(SendGoal(name, check.type, check.goal))
     except Exception as error:  # noqa: BLE001 - a goal that cannot be sent
         return missed(reason_of(error))
     try:
@@ -96,30 +85,18 @@ async def action(check: ActionCheck, evidence: Evidence) -> Observation:
         evidence.observer.ask(ForgetGoal(number))
 
 
-def _offered(name: str, type_name: str, evidence: Evidence) -> Observation:
-    row = next((row for row in evidence.update.actions if row.name == name), None)
-    if row is not None and row.servers:
-        return _of_type(name, row.type_names, type_name)
-    return missed(
-        say("there is no action {action}", action=name),
-        dead_nodes(evidence) or say("Is the ActionServer made in __init__?"),
-    )
-
-
 async def _pursued(check: ActionCheck, number: int, evidence: Evidence) -> Observation:
-    asked_to_cancel = False
+    to_cancel = check.cancel
     deadline_s = time.monotonic() + check.within
     goal: Goal | None = None
     while time.monotonic() < deadline_s and not evidence.ended:
         await evidence.wait(0.1)
         goal = next((each for each in evidence.update.goals if each.number == number), goal)
-        if goal is None:
-            continue
-        if goal.ended:
+        if goal is not None and goal.ended:
             return _ended(check, goal)
-        if check.cancel and goal.feedback_count and not asked_to_cancel:
+        if goal is not None and goal.feedback_count and to_cancel:
             evidence.observer.ask(CancelGoal(number))
-            asked_to_cancel = True
+            to_cancel = False
     where = goal.status.value if goal is not None else GoalStatus.SENDING.value
     seen = say("after {seconds} s the goal is still: {status}", seconds=f"{check.within:g}", status=where)
     return missed(seen, dead_nodes(evidence))
@@ -130,21 +107,16 @@ def _ended(check: ActionCheck, goal: Goal) -> Observation:
     if check.cancel:
         wanted = GoalStatus.CANCELED
     if goal.status is not wanted:
-        return missed(
-            say(
-                "the goal ended as {found}, not as {wanted}: {why}",
-                found=goal.status.value,
-                wanted=wanted.value,
-                why=goal.error or "-",
-            )
-        )
+        found, why = goal.status.value, goal.error or "-"
+        words = say("the goal ended as {found}, not as {wanted}: {why}", found=found, wanted=wanted.value, why=why)
+        return missed(words)
     if check.feedback:
         if goal.feedback is None:
             return missed(say("no feedback came"))
         try:
             field_at(goal.feedback, check.feedback)
         except FieldMissingError as error:
-            return missed(error.words)
+            return missed(reason_of(error))
     if check.result and differs(check.result, goal.result or {}, check.tolerance):
         return missed(say("the result is {result}", result=shown(goal.result or {})))
     return MET
@@ -152,121 +124,97 @@ def _ended(check: ActionCheck, goal: Goal) -> Observation:
 
 async def parameter(check: ParameterCheck, evidence: Evidence) -> Observation:
     """A node declares a parameter, and takes or refuses values."""
-    node = "/" + check.of.lstrip("/")
-    row = await _declared(check.parameter, node, check.within, evidence)
+    node, name = "/" + check.of.lstrip("/"), check.parameter
+    row = await _declared(name, node, check.within, evidence)
     if isinstance(row, Observation):
         return row
     if check.type is not None and row.type_name != check.type:
-        return missed(
-            say(
-                "the parameter {name} is a {found}, not a {wanted}",
-                name=check.parameter,
-                found=row.type_name,
-                wanted=check.type,
-            ),
-            say("The type is that of the default value: 0.5 is a double, 1 an integer."),
-        )
+        found = row.type_name
+        seen = say("the parameter {name} is a {found}, not a {wanted}", name=name, found=found, wanted=check.type)
+        return missed(seen, say("The type is that of the default value: 0.5 is a double, 1 an integer."))
     if check.value is not None and differs(check.value, row.value, None):
-        return missed(_parameter_is(check, row.value))
-    observation = MET
-    if check.set is not None:
-        observation = await _takes(check, node, row, evidence)
-    if observation.met and check.refuses is not None:
-        observation = await _refuses(check, node, row, evidence)
-    return observation
+        return _is_now(name, row.value)
+    taken = MET if check.set is None else await _takes(check.set, row, node, evidence)
+    return taken if check.refuses is None or not taken.met else await _refuses(check.refuses, row, node, evidence)
 
 
-def _parameter_is(check: ParameterCheck, value: object) -> str:
-    return say("the parameter {name} is {value}", name=check.parameter, value=shown(value))
+def _is_now(name: str, value: Value | None) -> Observation:
+    return missed(say("the parameter {name} is {value}", name=name, value=shown(value)))
 
 
 async def _declared(name: str, node: str, within_s: float, evidence: Evidence) -> ParameterRow | Observation:
-    there = await evidence.until(lambda: MET if evidence.node(node) is not None else missed(""), within_s)
+    if not await evidence.holds(lambda: evidence.node(node) is not None, within_s):
+        return missed(say("there is no node {node}", node=node), dead_nodes(evidence))
     # A node's services are announced apart from its name, on a busy machine seconds later.
     served = f"{node}/list_parameters"
-    await evidence.until(
-        lambda: MET if any(row.name == served for row in evidence.update.services) else None,
-        NOTICED_S if there.met else 0.0,
-    )
-    if not there.met:
-        return missed(say("there is no node {node}", node=node), dead_nodes(evidence))
-    result = await asyncio.wrap_future(evidence.observer.ask(ReadParameters(node, within_s)))
+    await evidence.holds(lambda: any(row.name == served for row in evidence.update.services), NOTICED_S)
+    result = await evidence.ask(ReadParameters(node, within_s))
     row = next((row for row in result.parameters if row.name == name), None)
     if row is not None:
         return row
     if result.error:
         return missed(result.error)
-    meant = nearest(name, [row.name for row in result.parameters])
     seen = say("{node} declares no parameter {name}", node=node, name=name)
-    if meant:
-        seen = say("{node} declares no parameter {name}, but {meant}", node=node, name=name, meant=meant)
-    return missed(seen, say("Is declare_parameter called in __init__?"))
+    names = (row.name for row in result.parameters)
+    return missed(but(seen, name, names), say("Is declare_parameter called in __init__?"))
 
 
-async def _takes(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> Observation:
-    result = await asyncio.wrap_future(evidence.observer.ask(SetParameters(node, {check.parameter: check.set})))
-    why = result.error or result.refused.get(check.parameter, "")
-    if why:
-        value = shown(check.set)
-        return missed(
-            say("the parameter {name} does not take {value}: {why}", name=check.parameter, value=value, why=why)
-        )
-    read = await asyncio.wrap_future(evidence.observer.ask(ReadParameters(node)))
-    now = next((each for each in read.parameters if each.name == check.parameter), row)
-    await _put_back(check, node, row, evidence)
-    return missed(_parameter_is(check, now.value)) if differs(check.set, now.value, None) else MET
+async def _takes(value: Value, row: ParameterRow, node: str, evidence: Evidence) -> Observation:
+    result = await evidence.ask(SetParameters(node, {row.name: value}))
+    if why := result.error or result.refused.get(row.name, ""):
+        text = shown(value)
+        return missed(say("the parameter {name} does not take {value}: {why}", name=row.name, value=text, why=why))
+    read = await evidence.ask(ReadParameters(node))
+    now = next((each for each in read.parameters if each.name == row.name), row)
+    await _put_back(row, node, evidence)
+    return _is_now(row.name, now.value) if differs(value, now.value, None) else MET
 
 
-async def _refuses(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> Observation:
-    result = await asyncio.wrap_future(evidence.observer.ask(SetParameters(node, {check.parameter: check.refuses})))
+async def _refuses(value: Value, row: ParameterRow, node: str, evidence: Evidence) -> Observation:
+    result = await evidence.ask(SetParameters(node, {row.name: value}))
     if result.error:
         return missed(result.error)
-    if check.parameter in result.refused:
+    if row.name in result.refused:
         return MET
-    await _put_back(check, node, row, evidence)
+    await _put_back(row, node, evidence)
     return missed(
-        say("the parameter {name} takes {value}", name=check.parameter, value=shown(check.refuses)),
+        say("the parameter {name} takes {value}", name=row.name, value=shown(value)),
         say("A callback of add_on_set_parameters_callback can refuse a value."),
     )
 
 
-async def _put_back(check: ParameterCheck, node: str, row: ParameterRow, evidence: Evidence) -> None:
+async def _put_back(row: ParameterRow, node: str, evidence: Evidence) -> None:
     if row.value is not None:
-        await asyncio.wrap_future(evidence.observer.ask(SetParameters(node, {check.parameter: row.value})))
+        await evidence.ask(SetParameters(node, {row.name: row.value}))
 
 
 async def node(check: NodeCheck, evidence: Evidence) -> Observation:
     """Wait for a node, and see that it is there a while later: one without a spin ends at once."""
+    name = check.node.lstrip("/")
     if check.ends is not None:
-        return await _ends(check.node.lstrip("/"), check, evidence)
+        return await _ends(name, check, evidence)
+
+    def is_there() -> Observation:
+        """It is in the graph, and its process runs: the graph forgets a dead one only later."""
+        process = evidence.nodes.get(name)
+        if evidence.node(f"/{name}") is not None and (process is None or process.state.alive):
+            return MET
+        seen = say("there is no node {node}", node=f"/{name}")
+        look = dead_nodes(evidence) or say("Is the node made in main, and does rclpy.spin get it?")
+        return missed(but(seen, f"/{name}", (row.name for row in evidence.update.nodes)), look)
+
+    def pid() -> int | None:
+        return evidence.nodes[name].pid if name in evidence.nodes else None
+
     deadline_s = time.monotonic() + check.within
     while True:
-        left_s = deadline_s - time.monotonic()
-        observation = await evidence.until(lambda: _is_there(check, evidence), max(left_s, 0))
+        observation = await evidence.until(is_there, max(deadline_s - time.monotonic(), 0))
         if not observation.met:
             return observation
-        pid = _pid(check, evidence)
+        before = pid()
         await evidence.let_pass(STAYS_S)
-        if _is_there(check, evidence).met and _pid(check, evidence) == pid:
+        if is_there().met and pid() == before:
             return MET
-
-
-def _pid(check: NodeCheck, evidence: Evidence) -> int | None:
-    process = evidence.nodes.get(check.node.lstrip("/"))
-    return process.pid if process is not None else None
-
-
-def _is_there(check: NodeCheck, evidence: Evidence) -> Observation:
-    """A node is in the graph, and its process runs: the graph forgets a dead one only later."""
-    wanted = "/" + check.node.lstrip("/")
-    process = evidence.nodes.get(wanted.lstrip("/"))
-    if evidence.node(wanted) is not None and (process is None or process.state.alive):
-        return MET
-    meant = nearest(wanted, [row.name for row in evidence.update.nodes])
-    seen = say("there is no node {node}", node=wanted)
-    if meant:
-        seen = say("there is no node {node}, but {meant}", node=wanted, meant=meant)
-    return missed(seen, dead_nodes(evidence) or say("Is the node made in main, and does rclpy.spin get it?"))
 
 
 async def _ends(name: str, check: NodeCheck, evidence: Evidence) -> Observation:
@@ -277,20 +225,25 @@ async def _ends(name: str, check: NodeCheck, evidence: Evidence) -> Observation:
     node = evidence.nodes.get(name)
     if node is None or not node.state.alive:
         return missed(dead_nodes(evidence) or say("{node} does not run", node=name))
-    await evidence.until(lambda: MET if _is_at_work(name, evidence) else None, BACK_WITHIN_S)
+
+    def is_back() -> bool:
+        return evidence.nodes[name].state in (NodeState.READY, NodeState.RUNNING, NodeState.FAILED)
+
+    def is_at_work() -> bool:
+        """It has begun to spin: one that has just been saved still imports, and cannot end."""
+        begun = time.time() - evidence.began_s(name) > BEGUN_AFTER_S
+        return begun and is_back() and evidence.node(f"/{name}") is not None
+
+    await evidence.holds(is_at_work, BACK_WITHIN_S)
     affected = [name, *_dependants(name, evidence)]
     evidence.touched.update(affected)
     try:
-        if check.signal == "SIGTERM":
-            await _terminated(node, evidence)
-        else:
-            await _stopped(name, evidence)
-        after = evidence.nodes[name]
-        observation = _how_it_ended(name, check.ends, after)
+        await (_terminated if check.signal == "SIGTERM" else _stopped)(node, evidence)
+        observation = _how_it_ended(name, check.ends, evidence.nodes[name])
     finally:
         # Also if the learner turns to another step meanwhile.
         await evidence.client.start(*affected)
-    await evidence.until(lambda: MET if _is_back(name, evidence) else None, BACK_WITHIN_S)
+    await evidence.holds(is_back, BACK_WITHIN_S)
     return observation
 
 
@@ -319,13 +272,13 @@ def _dependants(name: str, evidence: Evidence) -> list[str]:
     return [each for each in evidence.nodes if each in found - {name} and evidence.nodes[each].state.alive]
 
 
-async def _stopped(name: str, evidence: Evidence) -> None:
+async def _stopped(node: NodeStatus, evidence: Evidence) -> None:
     """Have the supervisor end a node: by SIGINT at first."""
-    stopping = asyncio.ensure_future(evidence.client.stop(name))
+    stopping = asyncio.ensure_future(evidence.client.stop(node.name))
     try:
         await asyncio.wait_for(asyncio.shield(stopping), KILLED_AFTER_S)
     except asyncio.TimeoutError:
-        await evidence.client.stop(name, now=True)
+        await evidence.client.stop(node.name, now=True)
         await stopping
 
 
@@ -334,19 +287,5 @@ async def _terminated(node: NodeStatus, evidence: Evidence) -> None:
     if node.pid is not None:
         with contextlib.suppress(OSError):
             os.killpg(node.pid, signal.SIGTERM)
-
-    def has_ended() -> Observation | None:
-        return MET if evidence.nodes[node.name].pid != node.pid else None
-
-    if not (await evidence.until(has_ended, TERMINATED_WITHIN_S)).met:
-        await _stopped(node.name, evidence)
-
-
-def _is_at_work(name: str, evidence: Evidence) -> bool:
-    """Whether it has begun to spin: one that has just been saved still imports, and cannot end."""
-    begun = time.time() - evidence.began_s(name) > BEGUN_AFTER_S
-    return begun and _is_back(name, evidence) and evidence.node(f"/{name}") is not None
-
-
-def _is_back(name: str, evidence: Evidence) -> bool:
-    return evidence.nodes[name].state in (NodeState.READY, NodeState.RUNNING, NodeState.FAILED)
+    if not await evidence.holds(lambda: evidence.nodes[node.name].pid != node.pid, TERMINATED_WITHIN_S):
+        await _stopped(node, evidence)

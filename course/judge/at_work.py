@@ -2,6 +2,11 @@
 
 What keeps a node from its work comes before whatever a check has missed meanwhile: which check that
 is depends on when it happened, and the reason does not.
+
+Some nodes fail without having been asked for anything, some seconds after their start. At which step that happens
+depends on how fast all of it is, and so would the grade. Therefore such a node fails every step that needs it, also
+those that were judged before. Whether a node fails by itself, or by what a step has asked of it, is tried: it is
+started anew and left alone.
 """
 
 from __future__ import annotations
@@ -9,25 +14,19 @@ from __future__ import annotations
 import asyncio
 import re
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.judge.evidence import MET, Observation
-from course.results import CheckResult, State
+from course.judge.evidence import MET, Evidence, Observation
+from course.results import CheckResult, State, StepResult
 from graph.observer.requests import CallService
 from launcher.faults.crash import held_by
 from launcher.processes.table import read_process
-from launcher.status import STUCK, NodeState
+from launcher.profile.steps.checks import CheckDocument, NodeCheck
+from launcher.profile.steps.model import StepDocument
+from launcher.status import STUCK, NodeFault, NodeState
 from text.sentences import Words, say
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.judge.evidence import Evidence
-    from graph.data import CallResult
-    from launcher.profile.steps.model import StepDocument
-    from launcher.status import NodeFault, NodeStatus
 
 FOUND_WITHIN_S = 10.0
 """How long the services that every node has may take to be discovered."""
@@ -41,6 +40,11 @@ SERVICE, TYPE = "get_parameters", "rcl_interfaces/srv/GetParameters"
 _ON_THE_WAY = (NodeState.WAITING, NodeState.STARTING, NodeState.STOPPING)
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 """Where an object is: another place in each run."""
+BEGUN_WITHIN_S = 20.0
+WATCHED_S = 8.0
+"""How old a process of each node must have become at least, without failing."""
+LONGER, AND_S, ALONE_AT_MOST_S = 1.25, 2.0, 15.0
+"""How much longer than it had lived when it failed a node is left alone, and at most how long."""
 
 
 def learners_nodes(step: StepDocument, evidence: Evidence) -> list[str]:
@@ -58,12 +62,17 @@ async def not_at_work(
     `since_s`: a crash since then counts, even if the node has been started again.
     `ran`: nodes of which the end counts as well, even if it was no crash.
     """
-    await evidence.until(lambda: MET if _settled(names, evidence) else None, SETTLED_WITHIN_S)
+    await evidence.holds(lambda: _settled(names, evidence), SETTLED_WITHIN_S)
     silent = await asyncio.gather(*(_silent_node(name, evidence) for name in names))
     for name, asked_in_vain in zip(names, silent, strict=True):
         seen, look = trouble(name, evidence, since_s, ended_too=name in ran)
-        if not seen and asked_in_vain:
-            seen, look = _silence(asked_in_vain, evidence.nodes[name])
+        fault = evidence.nodes[name].fault
+        if not seen and asked_in_vain and fault is not None and held_by(fault):
+            seen, look = _stuck(fault)
+        elif not seen and asked_in_vain:
+            seconds = f"{ANSWERS_WITHIN_S:g}"
+            seen = say("{node} does not answer within {seconds} s", node=asked_in_vain, seconds=seconds)
+            look = say("Does main come to rclpy.spin, and does every callback return?")
         if seen:
             # Several nodes may run it, and which of them fails first is chance.
             what = Path(evidence.nodes[name].file).name
@@ -80,7 +89,9 @@ def trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -
         return (say("it has ended"), say("rclpy.spin keeps a node running.")) if ended else ("", "")
     fault = node.fault
     if fault is not None and node.ails:
-        return _stuck(fault) if held_by(fault) else (_lasting(fault), "")
+        exception = fault.exception
+        lasting = exception if isinstance(exception, Words) else _ADDRESS.sub("", exception)
+        return _stuck(fault) if held_by(fault) else (replace(fault, exception=lasting).words, "")
     if node.signal is not None:
         return say("it was killed by {signal}", signal=node.signal), ""
     if node.exit_code is not None:
@@ -88,23 +99,9 @@ def trouble(name: str, evidence: Evidence, since_s: float, *, ended_too: bool) -
     return node.detail or node.state.value, ""
 
 
-def _lasting(fault: NodeFault) -> Words:
-    """Return the words of a fault without what is another in each run."""
-    if isinstance(fault.exception, Words):
-        return fault.words
-    return replace(fault, exception=_ADDRESS.sub("", fault.exception)).words
-
-
 def _stuck(fault: NodeFault) -> tuple[str, str]:
     file = fault.file.rpartition("/")[2]
     return say("{name} in {file} does not return", name=held_by(fault), file=file), fault.meaning
-
-
-def _silence(node: str, status: NodeStatus) -> tuple[str, str]:
-    if status.fault is not None and held_by(status.fault):
-        return _stuck(status.fault)
-    seen = say("{node} does not answer within {seconds} s", node=node, seconds=f"{ANSWERS_WITHIN_S:g}")
-    return seen, say("Does main come to rclpy.spin, and does every callback return?")
 
 
 def _settled(names: Sequence[str], evidence: Evidence) -> bool:
@@ -120,8 +117,8 @@ async def _silent_node(name: str, evidence: Evidence) -> str:
     pid = evidence.nodes[name].pid
     if pid is not None and _is_of_ros(evidence.nodes[name].file):
         # One that is crashing leaves the graph before its process ends.
-        await evidence.until(
-            lambda: MET if _nodes_of(name, evidence) or evidence.nodes[name].pid != pid else None, FOUND_WITHIN_S
+        await evidence.holds(
+            lambda: bool(_nodes_of(name, evidence)) or evidence.nodes[name].pid != pid, FOUND_WITHIN_S
         )
     for node in _nodes_of(name, evidence):
         if not await _answers(name, node, evidence):
@@ -157,14 +154,13 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
     deadline_s = time.monotonic() + ANSWERS_WITHIN_S
     while (left_s := deadline_s - time.monotonic()) > 0 and not gone():
         once_s = min(left_s, ASKED_AGAIN_S)
-        call = evidence.observer.ask(CallService(service, TYPE, {"names": []}, once_s))
-        answer = asyncio.ensure_future(asyncio.wrap_future(call))
+        answer = asyncio.ensure_future(evidence.ask(CallService(service, TYPE, {"names": []}, once_s)))
         try:
-            seen = await evidence.until(lambda it=answer: _in(it, gone()), once_s + 1)  # type: ignore[misc]
+            await evidence.holds(lambda it=answer: it.done() or gone(), once_s + 1)  # type: ignore[misc]
+            if answer.done() and answer.result().ok:
+                return True
         finally:
             answer.cancel()
-        if seen.met:
-            return True
         # It may have been asked while it was ending, or before it served; and an answer is lost
         # if the node has not found by then who asks.
         await evidence.wait(AGAIN_S)
@@ -172,13 +168,7 @@ async def _answers(name: str, node: str, evidence: Evidence) -> bool:
     return evidence.nodes[name].pid != pid
 
 
-def _in(answer: asyncio.Future[CallResult], gone: bool) -> Observation:
-    met = answer.done() and not answer.cancelled() and answer.result().ok
-    return Observation(met=met, final=answer.done() or gone)
-
-
 def running(evidence: Evidence) -> frozenset[str]:
-    """Return the names of the nodes that run."""
     return frozenset(node.name for node in evidence.nodes.values() if node.state.alive)
 
 
@@ -188,3 +178,82 @@ def _is_of_ros(file: str) -> bool:
         return "rclpy" in Path(file).read_text(encoding="utf-8", errors="replace")
     except OSError:
         return False
+
+
+class UnaskedFailures:
+    """Those of one run of a lesson."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._evidence = evidence
+        self._seen_until_s = 0.0
+        self._found: dict[str, CheckResult] = {}
+
+    def of(self, step: StepDocument) -> CheckResult | None:
+        """Return what a node of a step does by itself; None if nothing is known of that kind."""
+        names = learners_nodes(step, self._evidence)
+        return next((self._found[name] for name in names if name in self._found), None)
+
+    async def look(self) -> None:
+        """Try the nodes that have failed since the last look."""
+        await self._try(self._failed())
+
+    async def look_after(self, step: StepDocument, result: StepResult) -> None:
+        """Try those that have failed during a step, or do nothing, though they may still run."""
+        failed = self._failed()
+        if len(result.checks) > len(step.checks):
+            failed += [one for one in learners_nodes(step, self._evidence) if one not in failed]
+        elif any(map(ends, step.checks)):
+            return  # They were told to end.
+        await self._try(failed)
+
+    async def look_on(self) -> None:
+        """Watch until each node has had the time to fail, and try those that do."""
+        evidence = self._evidence
+
+        def is_young(name: str) -> bool:
+            return evidence.nodes[name].state.alive and evidence.lived_s(name) < WATCHED_S
+
+        await evidence.holds(lambda: not any(map(is_young, self._own())), WATCHED_S)
+        await self.look()
+
+    def _failed(self) -> list[str]:
+        since_s, self._seen_until_s = self._seen_until_s, time.time()
+        return [name for name in self._own() if trouble(name, self._evidence, since_s, ended_too=True)[0]]
+
+    def _own(self) -> list[str]:
+        """Return the learner's nodes of which nothing is known yet."""
+        nodes = self._evidence.nodes.values()
+        return [node.name for node in nodes if node.file and node.name not in self._found]
+
+    async def _try(self, names: Sequence[str]) -> None:
+        """Start nodes anew and leave them alone; note those that fail again."""
+        if not names:
+            return
+        evidence = self._evidence
+        lived_s = max(map(evidence.lived_s, names))
+        await start_anew(names, evidence)
+        since_s = {name: evidence.began_s(name) for name in names}
+        for name in names:
+            evidence.forget_earlier_crash(name)
+
+        def fail() -> bool:
+            return all(trouble(name, evidence, since_s[name], ended_too=True)[0] for name in names)
+
+        await evidence.holds(fail, min(LONGER * lived_s + AND_S, ALONE_AT_MOST_S))
+        for name in names:
+            idle = await not_at_work([name], evidence, since_s[name], frozenset([name]))
+            if idle is not None:
+                self._found[name] = idle
+        self._seen_until_s = time.time()
+
+
+def ends(check: CheckDocument) -> bool:
+    return isinstance(check, NodeCheck) and check.ends is not None
+
+
+async def start_anew(names: Sequence[str], evidence: Evidence) -> None:
+    """Start nodes anew; return once the process of each has begun."""
+    before_s = {name: evidence.began_s(name) for name in names}
+    evidence.touched.update(names)
+    await evidence.client.restart(*names)
+    await evidence.holds(lambda: all(evidence.began_s(name) > before_s[name] for name in names), BEGUN_WITHIN_S)

@@ -6,25 +6,22 @@ import asyncio
 import math
 import time
 from collections import deque
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, TypeVar
 
-from graph.data import PROCESS_NUMBERS, GraphUpdate
+from graph.data import PROCESS_NUMBERS, GraphUpdate, NodeRow, Sample, TopicRow
+from graph.observer.observer import Observer
+from graph.observer.requests import Request
 from graph.ros import ONLY_LISTENING
+from launcher.client.client import SupervisorClient
 from launcher.events import ClosedEvent, LogEvent, StatusEvent
 from launcher.processes.table import TICKS_PER_S, read_process
+from launcher.profile.steps.expressions import Drawn
+from launcher.status import LogLine, NodeStatus
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-    from typing import Any
-
-    from graph.data import NodeRow, TopicRow, Value
-    from graph.observer.observer import Observer
-    from launcher.client.client import SupervisorClient
-    from launcher.profile.steps.expressions import Drawn
-    from launcher.status import LogLine, NodeStatus
-
+T = TypeVar("T")
 KEPT_BYTES = 32_000_000
 """Most bytes of messages that are kept of one topic."""
 KEPT = 2000
@@ -34,17 +31,6 @@ MARGIN_S = 0.02
 TICK_S = 0.1
 LONGER_S = 1.0
 """So much longer than the last one must a process live, after a crash, not to be about to crash."""
-
-
-@dataclass(frozen=True)
-class ReceivedMessage:
-    """A message that has arrived."""
-
-    time_s: float
-    """When it arrived at the middleware, unix time."""
-    type_name: str
-    value: Mapping[str, Value]
-    size_bytes: int
 
 
 @dataclass(frozen=True)
@@ -64,7 +50,6 @@ MET = Observation(met=True)
 
 
 def missed(seen: str, look: str = "", *, final: bool = False) -> Observation:
-    """Return what has been seen instead of what should be."""
     return Observation(met=False, seen=seen, final=final, look=look)
 
 
@@ -99,7 +84,8 @@ class Evidence:
     """Nodes that the judge itself is restarting."""
     ended: str = ""
     """Why the session is over; empty while it runs."""
-    _messages: dict[str, deque[ReceivedMessage]] = field(default_factory=dict)
+    _messages: dict[str, deque[Sample]] = field(default_factory=dict)
+    """By topic; `received_s` is when each arrived at the middleware."""
     _bytes: dict[str, int] = field(default_factory=dict)
     _lines: dict[str, deque[LogLine]] = field(default_factory=dict)
     _born: dict[str, tuple[int, float]] = field(default_factory=dict)
@@ -112,8 +98,7 @@ class Evidence:
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
     def __post_init__(self) -> None:
-        self.note_starts(self.client.nodes.values())
-        self._note_crashes(self.client.nodes.values())
+        self._note(self.client.nodes.values())
         self.restarts = 0
 
     @property
@@ -125,8 +110,7 @@ class Evidence:
         for topic, samples in update.samples.items():
             kept = self._messages.setdefault(topic, deque())
             for sample in samples:
-                arrived_s = sample.received_s - sample.age_s
-                kept.append(ReceivedMessage(arrived_s, sample.type_name, sample.value, sample.size_bytes))
+                kept.append(replace(sample, received_s=sample.received_s - sample.age_s, age_s=0.0))
                 self._bytes[topic] = self._bytes.get(topic, 0) + sample.size_bytes
             while len(kept) > KEPT or (self._bytes[topic] > KEPT_BYTES and len(kept) > 2):
                 self._bytes[topic] -= kept.popleft().size_bytes
@@ -139,39 +123,32 @@ class Evidence:
                 for line in event.lines:
                     self._lines.setdefault(line.node, deque(maxlen=KEPT_LINES)).append(line)
             elif isinstance(event, StatusEvent):
-                self.note_starts(event.nodes)
-                self._note_crashes(event.nodes)
+                self._note(event.nodes)
             elif isinstance(event, ClosedEvent):
                 self.ended = event.reason or "closed"
             self._changed.set()
 
-    def note_starts(self, nodes: Iterable[NodeStatus]) -> None:
-        """Take what the supervisor says of the nodes: which processes are new, and whose doing."""
+    def _note(self, nodes: Iterable[NodeStatus]) -> None:
+        """Take what the supervisor says of the nodes: which processes are new, by whom, and which crashed."""
         for node in nodes:
             before, began_s = self._born.get(node.name, (None, math.inf))
-            if node.pid is None or node.pid == before:
-                continue
-            self._born[node.name] = (node.pid, _began_s(node.pid, node.uptime_s or 0.0))
-            again = node.restarts > self._policy_restarts.get(node.name, 0)
-            self._policy_restarts[node.name] = node.restarts
-            (self._again.add if again else self._again.discard)(node.name)
-            if node.name in self.touched:
-                self.touched.discard(node.name)
-                # Its file may have been saved meanwhile: then one start serves both.
-                self.restarts += _written_s(node.file) > began_s
-            elif not again:
-                self.restarts += 1
-
-    def _note_crashes(self, nodes: Iterable[NodeStatus]) -> None:
-        for node in nodes:
-            if not node.crashed:
-                continue
-            now_s, before = time.time(), self._crashed.get(node.name)
-            pid, began_s = self._born.get(node.name, (0, now_s))
-            if before is not None and before.pid == pid:
-                self._crashed[node.name] = replace(before, status=node)
-            else:
-                self._crashed[node.name] = Crash(pid, now_s, now_s - began_s, node)
+            if node.pid is not None and node.pid != before:
+                self._born[node.name] = (node.pid, _began_s(node.pid, node.uptime_s or 0.0))
+                again = node.restarts > self._policy_restarts.get(node.name, 0)
+                self._policy_restarts[node.name] = node.restarts
+                (self._again.add if again else self._again.discard)(node.name)
+                if node.name in self.touched:
+                    self.touched.discard(node.name)
+                    # Its file may have been saved meanwhile: then one start serves both.
+                    self.restarts += _written_s(node.file) > began_s
+                else:
+                    self.restarts += not again
+            if node.crashed:
+                now_s, crash = time.time(), self._crashed.get(node.name)
+                pid, began_s = self._born.get(node.name, (0, now_s))
+                if crash is None or crash.pid != pid:
+                    crash = Crash(pid, now_s, now_s - began_s, node)
+                self._crashed[node.name] = replace(crash, status=node)
 
     def trouble(self, name: str, since_s: float) -> NodeStatus | None:
         """Return how a node was when it crashed, or is if it ails; None if it did not since then.
@@ -222,9 +199,8 @@ class Evidence:
         publishing = [starts[name] for end in ends if (name := end.node.lstrip("/")) in starts]
         return (min if latched else max)(publishing or starts.values(), default=0.0)
 
-    def messages(self, topic: str, since_s: float) -> list[ReceivedMessage]:
-        """Return the messages on a topic that have arrived since then, oldest first."""
-        return [each for each in self._messages.get(topic, ()) if each.time_s >= since_s]
+    def messages(self, topic: str, since_s: float) -> list[Sample]:
+        return [each for each in self._messages.get(topic, ()) if each.received_s >= since_s]
 
     def lines(self, node: str, since_s: float) -> list[LogLine]:
         """Return what a node has logged since then; since it was started, if that is 0."""
@@ -236,7 +212,6 @@ class Evidence:
         return next((row for row in self.update.topics if row.name == name), None)
 
     def node(self, name: str) -> NodeRow | None:
-        """Return what is known of a node of the graph."""
         return next((row for row in self.update.nodes if row.name == name), None)
 
     def has_found_everybody(self) -> bool:
@@ -264,9 +239,14 @@ class Evidence:
         process = read_process(pid)
         return 2 if process is not None and process.name == "bwrap" else pid % PROCESS_NUMBERS
 
-    async def until(
-        self, look: Callable[[], Observation | None], within_s: float, *, tick_s: float = TICK_S
-    ) -> Observation:
+    async def ask(self, request: Request[T]) -> T:
+        return await asyncio.wrap_future(self.observer.ask(request))
+
+    async def holds(self, condition: Callable[[], bool], within_s: float) -> bool:
+        """Wait until something holds; return whether it does in time."""
+        return (await self.until(lambda: MET if condition() else None, within_s)).met
+
+    async def until(self, look: Callable[[], Observation | None], within_s: float) -> Observation:
         """Look again whenever something changes, until it is met, final, or time is up.
 
         `look` returns None for as long as nothing can be said; that is not met in the end.
@@ -279,7 +259,7 @@ class Evidence:
             left_s = deadline_s - time.monotonic()
             if left_s <= 0 or self.ended:
                 return observation or Observation(met=False)
-            await self.wait(min(left_s, tick_s))
+            await self.wait(min(left_s, TICK_S))
 
     async def let_pass(self, seconds: float) -> None:
         """Wait so long, or until the session ends."""
@@ -288,7 +268,6 @@ class Evidence:
             await self.wait(left_s)
 
     async def wait(self, longest_s: float) -> None:
-        """Wait until something changes."""
         self._changed.clear()
         try:
             await asyncio.wait_for(self._changed.wait(), longest_s)

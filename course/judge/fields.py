@@ -15,11 +15,7 @@ LONGEST = 80
 
 
 class FieldMissingError(Exception):
-    """A message has no field at this path; `words` says so."""
-
-    def __init__(self, words: str) -> None:
-        super().__init__(str(words))
-        self.words = words
+    """A message has no field at this path."""
 
 
 def field_at(value: Any, path: str) -> Any:  # noqa: ANN401 - any field
@@ -28,11 +24,8 @@ def field_at(value: Any, path: str) -> Any:  # noqa: ANN401 - any field
         if name:
             if not isinstance(value, Mapping) or name not in value:
                 hint = did_you_mean(name, value) if isinstance(value, Mapping) else ""
-                raise FieldMissingError(
-                    say("there is no field {path}; {hint}", path=path, hint=hint)
-                    if hint
-                    else say("there is no field {path}", path=path)
-                )
+                words = say("there is no field {path}", path=path)
+                raise FieldMissingError(say("{words}; {hint}", words=words, hint=hint) if hint else words)
             value = value[name]
         else:
             try:

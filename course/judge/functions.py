@@ -8,23 +8,22 @@ import ctypes
 import importlib.util
 import re
 import threading
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, InvalidStateError
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-from course.judge.evidence import MET, Observation, missed
-from course.judge.missing import dead_nodes, no_messages
+from course.judge.evidence import MET, Evidence, Observation, missed
+from course.judge.looking import dead_nodes, no_messages
+from course.lessons.lesson import LessonFolder
 from launcher.profile.steps.checks import PublishCheck, PythonCheck
+from launcher.profile.steps.expressions import Drawn
 from robot.topics import TF_STATIC
 from text.i18n import decimal
 from text.sentences import InLanguages, say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from course.judge.evidence import Evidence
-    from course.lessons.lesson import LessonFolder
-    from launcher.profile.steps.expressions import Drawn
 
 T = TypeVar("T")
 _POINT = re.compile(r"(?<=\d)\.(?=\d)")
@@ -33,11 +32,7 @@ AT_MOST_S = 2.0
 
 
 class LessonFaultError(Exception):
-    """The lesson itself is at fault; `words` says where."""
-
-    def __init__(self, words: str) -> None:
-        super().__init__(str(words))
-        self.words = words
+    """The lesson itself is at fault."""
 
 
 @dataclass(frozen=True)
@@ -80,44 +75,33 @@ async def python(check: PythonCheck, evidence: Evidence, since_s: float) -> Obse
     """Whatever the function says; it is asked again whenever something comes."""
     function = evidence.functions.get(check.python) or await _loaded(evidence.folder, check.python)
     if check.over is not None:
-        await evidence.until(lambda: None, check.over)
-    deadline_s = asyncio.get_running_loop().time() + check.within
-    while True:
-        said = await _asked(function, check, evidence, since_s)
-        if said is None:
-            return MET
-        left_s = deadline_s - asyncio.get_running_loop().time()
+        await evidence.let_pass(check.over)
+    deadline_s = time.monotonic() + check.within
+    while (said := await _asked(function, check, evidence, since_s)) is not None:
+        left_s = deadline_s - time.monotonic()
         if left_s <= 0 or evidence.ended:
             return _complaint(said, check, evidence)
         await evidence.wait(min(left_s, 0.2))
+    return MET
 
 
 async def _asked(
     function: Callable[[SeenMessages], object], check: PythonCheck, evidence: Evidence, since_s: float
 ) -> object:
     lines = {node: evidence.lines(node, since_s) for node in evidence.nodes}
+    since = {topic: since_s or evidence.fresh_s(topic, latched=topic == TF_STATIC) for topic in check.topics}
     seen = SeenMessages(
-        messages={
-            topic: [
-                (each.time_s, each.value)
-                for each in evidence.messages(topic, since_s or evidence.fresh_s(topic, latched=topic == TF_STATIC))
-            ]
-            for topic in check.topics
-        },
-        values=evidence.values,
-        logs={node: [line.text for line in of_it] for node, of_it in lines.items()},
-        logged={
-            node: [
-                (line.time_s, {"severity": line.severity.value, "text": line.text}) for line in of_it if line.logger
-            ]
-            for node, of_it in lines.items()
-        },
-    )
+        {topic: [(each.received_s, each.value) for each in evidence.messages(topic, since_s)]
+         for topic, since_s in since.items()},
+        evidence.values,
+        {node: [line.text for line in of_it] for node, of_it in lines.items()},
+        {node: [(line.time_s, {"severity": line.severity.value, "text": line.text}) for line in of_it if line.logger]
+         for node, of_it in lines.items()},
+    )  # fmt: skip
     try:
-        return await asyncio.wait_for(_in_thread(lambda: function(seen)), AT_MOST_S)
-    except asyncio.TimeoutError as error:
-        words = say("{function} takes longer than {n} s", function=check.python, n=AT_MOST_S)
-        raise LessonFaultError(words) from error
+        return await _in_thread(partial(function, seen), check.python)
+    except LessonFaultError:
+        raise
     except Exception as error:
         raise LessonFaultError(_fault(evidence.folder / check.python.partition(":")[0], error)) from error
 
@@ -139,49 +123,36 @@ async def preloaded(lesson: LessonFolder) -> dict[str, Callable[[SeenMessages], 
 
 async def _loaded(folder: Path, named: str) -> Callable[[SeenMessages], object]:
     """Load a function, also from a file that takes for ever. Raises LessonFaultError."""
-    try:
-        return await asyncio.wait_for(_in_thread(lambda: load(folder, named)), AT_MOST_S)
-    except asyncio.TimeoutError as error:
-        words = say("{function} takes longer than {n} s", function=named, n=AT_MOST_S)
-        raise LessonFaultError(words) from error
+    return await _in_thread(partial(load, folder, named), named)
 
 
-async def _in_thread(function: Callable[[], T]) -> T:
-    """Call a function in a thread that holds up nothing, not even the end of this process."""
-    loop = asyncio.get_running_loop()
-    called: asyncio.Future[T] = loop.create_future()
+async def _in_thread(function: Callable[[], T], named: str) -> T:
+    """Call a function in a thread that holds up nothing, not even the end of this process.
 
-    def settle(act: Callable[[], None]) -> None:
-        if not called.done():
-            act()
+    Raises:
+        LessonFaultError: if it takes too long; it is ended then, as far as it is Python code.
+    """
+    called: Future[T] = Future()
 
     def call() -> None:
-        try:
-            result = function()
-        except (StopIteration, SystemExit, KeyboardInterrupt) as error:
-            # A future refuses the first, and the others would end more than this call.
-            problem: Exception = RuntimeError(type(error).__name__)
-            act = lambda: called.set_exception(problem)  # noqa: E731
-        except Exception as error:  # noqa: BLE001 - raised where it is awaited
-            failure = error
-            act = lambda: called.set_exception(failure)  # noqa: E731
-        else:
-            act = lambda: called.set_result(result)  # noqa: E731
-        with contextlib.suppress(RuntimeError):  # The loop may be closed by then.
-            loop.call_soon_threadsafe(settle, act)
+        with contextlib.suppress(InvalidStateError):  # Nobody waits for it any more.
+            try:
+                called.set_result(function())
+            except Exception as error:  # noqa: BLE001 - raised where it is awaited
+                called.set_exception(error if not isinstance(error, StopIteration) else RuntimeError("StopIteration"))
+            except BaseException as error:  # noqa: BLE001 - it would end more than this call
+                called.set_exception(RuntimeError(type(error).__name__))
 
     thread = threading.Thread(target=call, name="lesson-function", daemon=True)
     thread.start()
     try:
-        return await called
+        return await asyncio.wait_for(asyncio.wrap_future(called), AT_MOST_S)
+    except asyncio.TimeoutError as error:
+        raise LessonFaultError(say("{function} takes longer than {n} s", function=named, n=AT_MOST_S)) from error
     finally:
-        if thread.is_alive() and (called.cancelled() or not called.done()):
-            _interrupt(thread)
-
-
-def _interrupt(thread: threading.Thread) -> None:
-    """Raise SystemExit in a thread that goes on for ever; it takes effect in Python code only."""
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), ctypes.py_object(SystemExit))
+        if thread.is_alive() and called.cancelled():
+            exits = ctypes.py_object(SystemExit)
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), exits)
 
 
 def _complaint(said: object, check: PythonCheck, evidence: Evidence) -> Observation:
@@ -189,15 +160,11 @@ def _complaint(said: object, check: PythonCheck, evidence: Evidence) -> Observat
         row = evidence.topic(topic)
         if row is None or not row.publishers:
             return no_messages(evidence, topic, type_name)
-    seen = InLanguages(_with_commas(said)) if isinstance(said, dict) else str(said)
-    return missed(seen, dead_nodes(evidence))
-
-
-def _with_commas(texts: Mapping[str, str]) -> dict[str, str]:
-    """Return the texts with the decimal point that Python writes as their language has it."""
-    return {
-        code: _POINT.sub(decimal(".", code), text) if isinstance(text, str) else text for code, text in texts.items()
-    }
+    if not isinstance(said, dict):
+        return missed(str(said), dead_nodes(evidence))
+    # The decimal point that Python writes, as each language has it.
+    texts = {code: _POINT.sub(decimal(".", code), text) for code, text in said.items() if isinstance(text, str)}
+    return missed(InLanguages(texts), dead_nodes(evidence))
 
 
 def _fault(path: Path, error: BaseException) -> str:

@@ -5,36 +5,29 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import time
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Any
 
-from course.judge.at_work import learners_nodes, not_at_work, running
-from course.judge.evidence import MET, Evidence, Observation
+from course.judge.at_work import UnaskedFailures, ends, learners_nodes, not_at_work, running, start_anew
+from course.judge.evidence import Evidence
 from course.judge.functions import LessonFaultError
 from course.judge.kinds import expected, judged, topics_of
-from course.judge.missing import dead_nodes
-from course.judge.unasked import UnaskedFailures, ends, start_anew
-from course.results import CheckResult, LessonResult, State, StepResult
-from graph.data import Interest
+from course.judge.looking import dead_nodes
+from course.lessons.lesson import LessonFolder
+from course.results import CheckResult, State, StepResult
+from graph.data import GraphUpdate, Interest
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.observer import Observer
-from launcher.profile.steps.checks import LOOK_AGAIN_S
+from launcher.client.client import SupervisorClient
+from launcher.profile.steps.checks import LOOK_AGAIN_S, CheckDocument
 from launcher.profile.steps.draw import draw
 from launcher.profile.steps.expressions import filled
+from launcher.profile.steps.model import StepDocument
 from launcher.status import NodeState
 from text.sentences import InLanguages, reason_of, say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Iterable, Mapping
-    from typing import Any
-
-    from course.lessons.lesson import LessonFolder
-    from graph.data import GraphUpdate
-    from launcher.client.client import SupervisorClient
-    from launcher.profile.steps.checks import CheckDocument
-    from launcher.profile.steps.model import StepDocument
 
 PERIOD_S = 0.1
 SETTLED_WITHIN_S = 15.0
@@ -68,26 +61,18 @@ class Judge:
 
     async def settle(self) -> None:
         """Wait until every node is ready, or will not be, and the judge has found those there."""
-        loop = asyncio.get_running_loop()
-        deadline_s = loop.time() + SETTLED_WITHIN_S
-        while loop.time() < deadline_s and not self.evidence.ended:
-            if all(node.state in _SETTLED for node in self.evidence.nodes.values()):
-                break
-            await self.evidence.wait(0.2)
-        named_by_s = loop.time() + NAMED_WITHIN_S
+        evidence = self.evidence
+        await evidence.holds(lambda: all(one.state in _SETTLED for one in evidence.nodes.values()), SETTLED_WITHIN_S)
+        named_by_s = time.monotonic() + NAMED_WITHIN_S
 
-        def look() -> Observation | None:
-            alive = [node.name for node in self.evidence.nodes.values() if node.state.alive]
-            named = all(self.evidence.node(f"/{name}") for name in alive)
-            found = self.evidence.has_found_everybody()
-            enough = (named or found) if loop.time() >= named_by_s else (named and found)
-            return MET if enough else None
+        def found() -> bool:
+            alive = [node.name for node in evidence.nodes.values() if node.state.alive]
+            ways = all(evidence.node(f"/{name}") for name in alive), evidence.has_found_everybody()
+            return any(ways) if time.monotonic() >= named_by_s else all(ways)
 
-        await self.evidence.until(look, FOUND_WITHIN_S)
+        await evidence.holds(found, FOUND_WITHIN_S)
 
-    async def once(
-        self, *, until: str = "", on_step: Callable[[StepResult], object] = lambda _: None
-    ) -> LessonResult:
+    async def once(self, on_step: Callable[[StepResult], object], *, until: str = "") -> None:
         """Judge every step once, in order; those after the step `until` are left out.
 
         `on_step` hears of each, and once more of one that a later failure of its node changes.
@@ -119,7 +104,6 @@ class Judge:
             await failures.look_on()
             results = self._revised(results, failures)
             tell()
-        return LessonResult(self.seed, self.evidence.values, tuple(results))
 
     async def _start_crashed(self) -> None:
         """Start the learner's nodes that have crashed, so that each step has one that runs.
@@ -202,18 +186,14 @@ class Judge:
 
     async def _rest(self, shown: StepResult | None, restarts: int) -> None:
         """Wait until a node is started, or until it is time to look again."""
-        failed = len([c for c in shown.checks if c.state is State.PASSED]) if shown else 0
-        checks = self.steps[shown.id].checks if shown else ()
-        longest_s = checks[failed].rest_s if failed < len(checks) else AGAIN_S
-        if shown is not None and len(shown.checks) > len(checks):
-            longest_s = IDLE_S
-        until_s = time.monotonic() + longest_s
-        while (
-            (left_s := until_s - time.monotonic()) > 0
-            and self.evidence.restarts == restarts
-            and not self.evidence.ended
-        ):
-            await self.evidence.wait(left_s)
+        longest_s = AGAIN_S
+        if shown is not None:
+            checks, failed = self.steps[shown.id].checks, sum(one.state is State.PASSED for one in shown.checks)
+            if len(shown.checks) > len(checks):
+                longest_s = IDLE_S
+            elif failed < len(checks):
+                longest_s = checks[failed].rest_s
+        await self.evidence.holds(lambda: self.evidence.restarts != restarts, longest_s)
 
     async def step(
         self,
@@ -283,7 +263,8 @@ class Judge:
 
     def follow(self, steps: Iterable[StepDocument] | None = None) -> None:
         """Subscribe to what these steps need, or all steps, and to nothing else."""
-        followed = _topics_of(self.steps.values() if steps is None else steps)
+        chosen = self.steps.values() if steps is None else steps
+        followed = {topic for step in chosen for check in step.checks for topic in topics_of(check)}
         self.evidence.observer.want(Interest(followed=frozenset(followed), period_s=PERIOD_S))
 
 
@@ -300,15 +281,8 @@ def _concluded(step: StepDocument, found: list[CheckResult], done: int, idle: Ch
     return StepResult(step.id, state, step.points, tuple(found))
 
 
-def _topics_of(steps: Iterable[StepDocument]) -> set[str]:
-    return {topic for step in steps for check in step.checks for topic in topics_of(check)}
-
-
 def _why(error: Exception) -> str:
-    """Say why a check could not be judged."""
-    if isinstance(error, LessonFaultError):
-        return error.words
-    if isinstance(error, (FieldError, UnknownTypeError)):
+    if isinstance(error, (LessonFaultError, FieldError, UnknownTypeError)):
         return reason_of(error)
     return say("the judge failed: {kind}: {text}", kind=type(error).__name__, text=str(error))
 

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-import asyncio
 import re
 import time
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 from course.judge import acting, looking
-from course.judge.evidence import MET, Observation, missed
+from course.judge.evidence import MET, Evidence, Observation, missed
 from course.judge.fields import shown
 from course.judge.functions import python
-from course.judge.missing import nobody_subscribes
+from course.judge.looking import nobody_subscribes
+from graph.data import TopicRow
 from graph.messages.making import FieldError
 from graph.messages.types import UnknownTypeError
 from graph.observer.requests import Publish
 from launcher.profile.steps.checks import KINDS as MODELS
-from launcher.profile.steps.checks import FieldCheck, LogCheck, PublishCheck, PythonCheck, TopicCheck, kind_of
+from launcher.profile.steps.checks import (
+    ActionCheck,
+    CheckDocument,
+    FieldCheck,
+    LogCheck,
+    NodeCheck,
+    PublishCheck,
+    PythonCheck,
+    TopicCheck,
+    kind_of,
+)
+from text.i18n import N_
 from text.sentences import InLanguages, reason_of, say
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from course.judge.evidence import Evidence
-    from launcher.profile.steps.checks import ActionCheck, CheckDocument, NodeCheck
 
 SUBSCRIBED_S = 3.0
 """How long the judge waits for its own subscriptions before it publishes."""
@@ -32,8 +38,8 @@ SUBSCRIBED_S = 3.0
 class Kind(NamedTuple):
     """One kind of check."""
 
-    template: Callable[[Any], str]
-    """The template of the sentence that says what a check expects; its names are those of the check's fields."""
+    template: Callable[[Any], str] | str
+    """That of the sentence that says what a check expects; its names are those of the check's fields."""
     look: Callable[[Any, Evidence, float], Observation | None] | None = None
     """Look at what has come since a time; 0: since the nodes were started."""
     act: Callable[[Any, Evidence], Any] | None = None
@@ -44,7 +50,7 @@ class Kind(NamedTuple):
 
 async def judged(check: CheckDocument, evidence: Evidence, since_s: float = 0.0) -> Observation:
     """Judge a check, for as long as it may take."""
-    kind = KINDS[str(kind_of(check))]
+    kind = _kind(check)
     if isinstance(check, PythonCheck):
         return await python(check, evidence, since_s)
     if kind.act is not None:
@@ -59,9 +65,13 @@ async def judged(check: CheckDocument, evidence: Evidence, since_s: float = 0.0)
     return await evidence.until(lambda: look(check, evidence, since_s), within_s)
 
 
+def _kind(check: CheckDocument) -> Kind:
+    return KINDS[str(kind_of(check))]
+
+
 def topics_of(check: CheckDocument) -> set[str]:
     """Return the topics whose messages a check needs to see."""
-    return KINDS[str(kind_of(check))].topics(check)
+    return _kind(check).topics(check)
 
 
 async def _published(check: PublishCheck, evidence: Evidence) -> Observation:
@@ -70,7 +80,7 @@ async def _published(check: PublishCheck, evidence: Evidence) -> Observation:
     A publisher that has not discovered the judge's subscription yet answers in vain, and nobody
     but that publisher knows.
     """
-    await _hears(check, evidence)
+    await evidence.holds(lambda: all(row.measured for row in _published_rows(check, evidence)), SUBSCRIBED_S)
     began_s = time.time()
     observation = await _followed(check, evidence, began_s)
     if not (observation.met or observation.final) and _unanswered(check, evidence, began_s):
@@ -78,14 +88,9 @@ async def _published(check: PublishCheck, evidence: Evidence) -> Observation:
     return observation
 
 
-async def _hears(check: PublishCheck, evidence: Evidence) -> None:
-    """Wait until the judge itself is subscribed to what is to follow."""
-
-    def hears() -> Observation | None:
-        rows = [row for topic in topics_of(check) if (row := evidence.topic(topic)) and row.publishers]
-        return MET if all(row.measured for row in rows) else None
-
-    await evidence.until(hears, SUBSCRIBED_S)
+def _published_rows(check: PublishCheck, evidence: Evidence) -> list[TopicRow]:
+    """Return the topics that are to follow and that somebody publishes."""
+    return [row for name in topics_of(check) if (row := evidence.topic(name)) and row.publishers]
 
 
 def _unanswered(check: PublishCheck, evidence: Evidence, since_s: float) -> bool:
@@ -97,8 +102,7 @@ def _unanswered(check: PublishCheck, evidence: Evidence, since_s: float) -> bool
     nodes = {f"/{name}" for name in evidence.nodes}
     if asked is not None and any(end.node in nodes for end in asked.published_by):
         return True
-    rows = [row for name in topics_of(check) if (row := evidence.topic(name)) and row.publishers]
-    return any(not evidence.messages(row.name, since_s) for row in rows)
+    return any(not evidence.messages(row.name, since_s) for row in _published_rows(check, evidence))
 
 
 async def _followed(check: PublishCheck, evidence: Evidence, began_s: float) -> Observation:
@@ -117,9 +121,8 @@ async def _followed(check: PublishCheck, evidence: Evidence, began_s: float) -> 
 
 
 async def _sent(check: PublishCheck, evidence: Evidence) -> Observation:
-    sending = evidence.observer.ask(Publish(check.publish, check.type, check.message))
     try:
-        heard = await asyncio.wrap_future(sending)
+        heard = await evidence.ask(Publish(check.publish, check.type, check.message))
     except (FieldError, UnknownTypeError):
         raise
     except Exception as error:  # noqa: BLE001 - the graph refuses it
@@ -129,27 +132,15 @@ async def _sent(check: PublishCheck, evidence: Evidence) -> Observation:
     row = evidence.topic(check.publish)
     types = tuple(dict.fromkeys(end.type_name for end in row.subscribed_by)) if row else ()
     if types and types != (check.type,):
-        return missed(
-            say(
-                "{topic} is subscribed to as {found}, not as {wanted}",
-                topic=check.publish,
-                found=", ".join(types),
-                wanted=check.type,
-            )
-        )
+        words = say("{topic} is subscribed to as {found}, not as {wanted}", topic=check.publish,
+                    found=", ".join(types), wanted=check.type)  # fmt: skip
+        return missed(words)
     if not row or not row.subscribed_by:
         return nobody_subscribes(evidence, check.publish)
     end = row.subscribed_by[0]
-    return missed(
-        say(
-            "{node} subscribes to {topic} in vain; its QoS: {reliability}, {durability}",
-            node=end.node,
-            topic=check.publish,
-            reliability=end.reliability,
-            durability=end.durability,
-        ),
-        say("The QoS of a subscription must not ask for more than publishers offer."),
-    )
+    words = say("{node} subscribes to {topic} in vain; its QoS: {reliability}, {durability}", node=end.node,
+                topic=check.publish, reliability=end.reliability, durability=end.durability)  # fmt: skip
+    return missed(words, say("The QoS of a subscription must not ask for more than publishers offer."))
 
 
 def expected(check: CheckDocument) -> str:
@@ -168,7 +159,8 @@ def expected(check: CheckDocument) -> str:
         about["only"] = ", ".join(check.only)
     if isinstance(check, PythonCheck):
         about["python"] = check.python.partition(":")[2].replace("_", " ")
-    return say(KINDS[str(kind_of(check))].template(check), **about)
+    template = _kind(check).template
+    return say(template if isinstance(template, str) else template(check), **about)
 
 
 def _shown(value: object) -> str:
@@ -179,64 +171,60 @@ def _shown(value: object) -> str:
 
 def _of_topic(check: TopicCheck) -> str:
     if check.silent is not None:
-        return say("nothing comes on {topic}").template
+        return N_("nothing comes on {topic}")
     if check.only is not None:
-        return (
-            say("nobody but {only} publishes {topic}") if check.only else say("nobody publishes {topic}")
-        ).template
+        return N_("nobody but {only} publishes {topic}") if check.only else N_("nobody publishes {topic}")
     if check.rate is not None:
-        return say("{topic} comes {rate} times a second").template
-    return say("{topic} is published as {type}").template
+        return N_("{topic} comes {rate} times a second")
+    return N_("{topic} is published as {type}")
 
 
 def _of_field(check: FieldCheck) -> str:
     if check.between is not None:
-        return say("{path} of {field} is between {low} and {high}").template
+        return N_("{path} of {field} is between {low} and {high}")
     if check.matches is not None:
-        return say("{path} of {field} has {matches}").template
+        return N_("{path} of {field} has {matches}")
     if check.changes is None:
-        return say("{path} of {field} is {equals}").template
+        return N_("{path} of {field} is {equals}")
     if check.changes:
-        return say("{path} of {field} differs from message to message").template
-    return say("{path} of {field} stays the same").template
+        return N_("{path} of {field} differs from message to message")
+    return N_("{path} of {field} stays the same")
 
 
 def _of_action(check: ActionCheck) -> str:
     if not check.accepted:
-        return say("{action} refuses the goal {goal}").template
+        return N_("{action} refuses the goal {goal}")
     if check.cancel:
-        return say("{action} lets the goal {goal} be cancelled").template
+        return N_("{action} lets the goal {goal} be cancelled")
     if check.result:
-        return say("{action} carries out the goal {goal}, with the result {result}").template
-    return say("{action} takes the goal {goal}").template
+        return N_("{action} carries out the goal {goal}, with the result {result}")
+    return N_("{action} takes the goal {goal}")
 
 
 def _of_node(check: NodeCheck) -> str:
     if check.ends is not None:
-        return say("{node} ends on Ctrl-C with exit code {ends}").template
-    return say("the node {node} is in the graph").template
+        return N_("{node} ends on Ctrl-C with exit code {ends}")
+    return N_("the node {node} is in the graph")
 
 
-def _words(template: str) -> Callable[[CheckDocument], str]:
-    return lambda _check: template
+def _measured(check: TopicCheck) -> set[str]:
+    return {check.topic} if check.rate or check.silent else set()
+
+
+def _following(check: PublishCheck) -> set[str]:
+    return {topic for follows in check.then for topic in topics_of(follows)}
 
 
 KINDS: Mapping[str, Kind] = {
     "node": Kind(_of_node, act=acting.node),
-    "topic": Kind(
-        _of_topic, looking.topic, topics=lambda check: {check.topic} if check.rate or check.silent else set()
-    ),
-    "subscription": Kind(_words(say("{by} subscribes to {subscription}").template), looking.subscription),
+    "topic": Kind(_of_topic, looking.topic, topics=_measured),
+    "subscription": Kind(N_("{by} subscribes to {subscription}"), looking.subscription),
     "field": Kind(_of_field, looking.field, topics=lambda check: {check.field}),
-    "service": Kind(_words(say("{service}, asked {request}, answers {response}").template), act=acting.service),
+    "service": Kind(N_("{service}, asked {request}, answers {response}"), act=acting.service),
     "action": Kind(_of_action, act=acting.action),
-    "publish": Kind(
-        _words(say("when {message} is published on {publish}: {then}").template),
-        act=_published,
-        topics=lambda check: {topic for follows in check.then for topic in topics_of(follows)},
-    ),
-    "parameter": Kind(_words(say("{of} has the parameter {parameter}").template), act=acting.parameter),
-    "log": Kind(_words(say("{log} logs {matches}").template), looking.log),
-    "python": Kind(_words(say("a check of this lesson: {python}").template), topics=lambda check: set(check.topics)),
+    "publish": Kind(N_("when {message} is published on {publish}: {then}"), act=_published, topics=_following),
+    "parameter": Kind(N_("{of} has the parameter {parameter}"), act=acting.parameter),
+    "log": Kind(N_("{log} logs {matches}"), looking.log),
+    "python": Kind(N_("a check of this lesson: {python}"), topics=lambda check: set(check.topics)),
 }
 assert set(KINDS) == set(MODELS)

@@ -1,27 +1,28 @@
-"""The kinds of checks that only look at what is there and what has come: topics, fields of messages, the log."""
+"""The kinds of checks that only look at what is there and what has come: topics, fields of messages, the log.
+
+And why something is not there: a node that has ended, a topic of a similar name, another type.
+"""
 
 from __future__ import annotations
 
 import math
 import re
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import Any
 
-from course.judge.evidence import MET, Observation, is_decks, missed, same_name
+from course.judge.evidence import MET, Evidence, Observation, is_decks, missed, same_name
 from course.judge.fields import FieldMissingError, differs, field_at, shown
-from course.judge.missing import dead_nodes, no_messages, no_topic, nobody_subscribes, wrong_type
-from text.sentences import say
+from graph.data import EndpointInfo, Sample, Trouble
+from launcher.profile.steps.checks import FieldCheck, LogCheck, SubscriptionCheck, TopicCheck
+from launcher.status import NodeState
+from text.sentences import reason_of, say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.judge.evidence import Evidence, ReceivedMessage
-    from graph.data import EndpointInfo
-    from launcher.profile.steps.checks import FieldCheck, LogCheck, SubscriptionCheck, TopicCheck
 
 ABSENT_S = 1.0
 """How long nobody must publish what nobody is to publish: discovery takes its time."""
+_COMPARE = say("Compare the name of the topic letter by letter.")
+_DOWN = (NodeState.FAILED, NodeState.BACKOFF, NodeState.EXITED)
 FEW = 3
 """Messages that show whether something changes."""
 
@@ -70,7 +71,7 @@ def _rate(check: TopicCheck, wanted: tuple[float, float], evidence: Evidence, si
     messages = evidence.messages(check.topic, now_s - window_s)
     if not messages:
         return no_messages(evidence, check.topic, check.type)
-    first_s = evidence.messages(check.topic, since_s)[0].time_s
+    first_s = evidence.messages(check.topic, since_s)[0].received_s
     if now_s - first_s < check.over and not (now_s - since_s > 2 * check.over):
         return None
     hz = _hz(messages, window_s)
@@ -82,10 +83,10 @@ def _rate(check: TopicCheck, wanted: tuple[float, float], evidence: Evidence, si
     )
 
 
-def _hz(messages: Sequence[ReceivedMessage], window_s: float) -> float:
+def _hz(messages: Sequence[Sample], window_s: float) -> float:
     if len(messages) < 2:
         return len(messages) / window_s
-    span_s = messages[-1].time_s - messages[0].time_s
+    span_s = messages[-1].received_s - messages[0].received_s
     return (len(messages) - 1) / span_s if span_s > 0 else math.inf
 
 
@@ -107,31 +108,24 @@ def _names(ends: Sequence[EndpointInfo]) -> str:
 
 
 def subscription(check: SubscriptionCheck, evidence: Evidence, _since_s: float) -> Observation:
-    """Somebody subscribes to a topic."""
-    row = evidence.topic(check.subscription)
+    row, by = evidence.topic(check.subscription), check.by or ""
     ends = row.subscribed_by if row is not None else ()
-    ours = [end for end in ends if not check.by or same_name(end.node, check.by)]
-    if not ours and not check.by:
+    ours = [end for end in ends if not by or same_name(end.node, by)]
+    if not ours and not by:
         return nobody_subscribes(evidence, check.subscription)
     if not ours:
-        seen = say("{node} does not subscribe to {topic}", node=check.by, topic=check.subscription)
-        return missed(seen, dead_nodes(evidence) or _near_subscription(check, evidence))
+        seen = say("{node} does not subscribe to {topic}", node=by, topic=check.subscription)
+        topics = evidence.update.topics
+        names = [row.name for row in topics if any(same_name(end.node, by) for end in row.subscribed_by)]
+        meant = nearest(check.subscription, names)
+        look = say("Is create_subscription called in __init__, with the right name?")
+        if meant:
+            look = say("There is a subscription to {meant}: compare the names.", meant=meant)
+        return missed(seen, dead_nodes(evidence) or look)
     types = tuple(dict.fromkeys(end.type_name for end in ours))
     if check.type and types != (check.type,):
         return wrong_type(check.subscription, check.type, types)
     return MET
-
-
-def _near_subscription(check: SubscriptionCheck, evidence: Evidence) -> str:
-    topics = [
-        row.name
-        for row in evidence.update.topics
-        if any(same_name(end.node, check.by or "") for end in row.subscribed_by)
-    ]
-    meant = nearest(check.subscription, topics)
-    if meant:
-        return say("There is a subscription to {meant}: compare the names.", meant=meant)
-    return say("Is create_subscription called in __init__, with the right name?")
 
 
 def field(check: FieldCheck, evidence: Evidence, since_s: float) -> Observation:
@@ -150,7 +144,7 @@ def field(check: FieldCheck, evidence: Evidence, since_s: float) -> Observation:
     try:
         found = [field_at(message.value, check.path) for message in messages]
     except FieldMissingError as error:
-        return missed(error.words)
+        return missed(reason_of(error))
     if check.changes is not None:
         return _changes(check, found)
     wrong = [value for value in found if not _complies(check, value)]
@@ -178,16 +172,14 @@ def _complies(check: FieldCheck, value: Any) -> bool:  # noqa: ANN401 - any fiel
 
 
 def log(check: LogCheck, evidence: Evidence, since_s: float) -> Observation:
-    """A node logs a line."""
     lines = evidence.lines(check.log, since_s)
     fitting = [line for line in lines if re.search(check.matches, line.text)]
     right = [line for line in fitting if check.level in (None, line.severity.value)]
     if len(right) >= check.lines:
         return MET
     if fitting and not right:
-        found, text = fitting[0].severity.value, fitting[0].text
-        words = say("{node} logs it as {found}, not as {wanted}: {text}", node=check.log, found=found,
-                    wanted=check.level, text=text)  # fmt: skip
+        words = say("{node} logs it as {found}, not as {wanted}: {text}", node=check.log,
+                    found=fitting[0].severity.value, wanted=check.level, text=fitting[0].text)  # fmt: skip
         return missed(words)
     if right:
         seen = say("{node} logs it fewer than {n} times", node=check.log, n=check.lines)
@@ -197,3 +189,68 @@ def log(check: LogCheck, evidence: Evidence, since_s: float) -> Observation:
     else:
         seen = say("{node} logs nothing", node=check.log)
     return missed(seen, dead_nodes(evidence))
+
+
+def dead_nodes(evidence: Evidence) -> str:
+    """Say which node of the profile does not run as meant, and why; empty if all do.
+
+    What is wrong with a learner's own file comes first: an older process may still run.
+    """
+    nodes = evidence.nodes.values()
+    faults = {node.name: node.fault for node in nodes if node.fault is not None}
+    severe = [
+        name for name, fault in faults.items() if evidence.nodes[name].state in _DOWN or fault.kind != "warning"
+    ]
+    down = [node for node in nodes if node.state in _DOWN]
+    if down and not severe:
+        return say("{node} does not run: {why}", node=down[0].name, why=down[0].detail or down[0].state.value)
+    return next((say("{node}: {why}", node=name, why=faults[name].words) for name in (*severe, *faults)), "")
+
+
+def but(words: str, name: str, names: Iterable[str]) -> str:
+    """Return the words that something is not there, and what there is of a similar name."""
+    meant = nearest(name, list(names))
+    return say("{words}, but {meant}", words=words, meant=meant) if meant else words
+
+
+def no_topic(evidence: Evidence, topic: str) -> Observation:
+    meant = nearest(topic, [row.name for row in evidence.update.topics if row.publishers and row.name != topic])
+    if meant:
+        return missed(say("nobody publishes {topic}, but {meant} is published", topic=topic, meant=meant), _COMPARE)
+    return missed(
+        say("nobody publishes {topic}", topic=topic),
+        dead_nodes(evidence) or say("Is create_publisher called in __init__, and is the name of the topic right?"),
+    )
+
+
+def nobody_subscribes(evidence: Evidence, topic: str) -> Observation:
+    meant = nearest(topic, [row.name for row in evidence.update.topics if row.subscribed_by and row.name != topic])
+    if meant:
+        seen = say("nobody subscribes to {topic}, but {meant} is subscribed to", topic=topic, meant=meant)
+        return missed(seen, _COMPARE)
+    return missed(
+        say("nobody subscribes to {topic}", topic=topic),
+        dead_nodes(evidence) or say("Is create_subscription called in __init__, with the right name?"),
+    )
+
+
+def wrong_type(topic: str, wanted: str, found: tuple[str, ...]) -> Observation:
+    return missed(
+        say("{topic} has the type {found}, not {wanted}", topic=topic, found=", ".join(found), wanted=wanted),
+        say("Compare the import of the message and the type in create_publisher."),
+    )
+
+
+def no_messages(evidence: Evidence, topic: str, type_name: str) -> Observation:
+    row = evidence.topic(topic)
+    if row is None or not row.publishers:
+        return no_topic(evidence, topic)
+    published = tuple(dict.fromkeys(end.type_name for end in row.published_by))
+    if type_name and published and published != (type_name,):
+        return wrong_type(topic, type_name, published)
+    if row.trouble in (Trouble.QOS_MISMATCH, Trouble.UNKNOWN_TYPE):
+        return missed(row.detail)
+    return missed(
+        say("no message has come on {topic}", topic=topic),
+        dead_nodes(evidence) or say("Is publish called? By a timer, or in the callback?"),
+    )

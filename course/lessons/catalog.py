@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.lessons.lesson import LessonFolder, folders
 from launcher.errors import UsageError
 from launcher.profile.catalog import fitting, meant
 from launcher.profile.defaults import FOLDERS_OWN
+from launcher.profile.model import Profile
 from text.sentences import say
 from text.suggestions import did_you_mean
-
-if TYPE_CHECKING:
-    from launcher.profile.model import Profile
 
 SHIPPED = Path(__file__).resolve().parents[2] / "lessons"
 COURSE = "DECK_COURSE"

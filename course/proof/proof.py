@@ -4,25 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import tempfile
+from collections.abc import AsyncIterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.lessons.mistakes import WRONG
+from course.lessons.lesson import WRONG, LessonFolder, Mistake
 from course.proof.trial import Places, layered, trial
-from course.results import LessonResult, State
+from course.results import State, StepResult
 from launcher.errors import LauncherError
-from launcher.profile.steps.draw import draw, new_seed
+from launcher.profile.steps.draw import new_seed
 from text.i18n import LANGUAGES
 from text.sentences import reason_of, say
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Sequence
-
-    from course.lessons.lesson import LessonFolder
-    from course.lessons.mistakes import Mistake
-    from course.results import StepResult
 
 NODES_OF_ONE = 6
 """How many nodes a run may have that does not take the place of others."""
@@ -48,11 +41,11 @@ class ProofVerdict:
     variant: Variant
     complaint: str
     """Why it does not prove what it should; empty if it does."""
-    result: LessonResult | None = None
+    seed: int = 0
+    """What its values were drawn from; 0 if it was not run."""
 
 
 def variants(lesson: LessonFolder) -> list[Variant]:
-    """Return the variants of a lesson."""
     base = (lesson.starter, lesson.solution)
     return [
         Variant(lesson, "starter", base[:1], ""),
@@ -150,17 +143,17 @@ async def _proven(variant: Variant, domain: int, seed: int) -> ProofVerdict:
         try:
             if variant.mistake is not None:
                 variant.mistake.make(places.files)
-            result = await _until_it_fails(variant, places, domain, seed)
+            steps = await _until_it_fails(variant, places, domain, seed)
         except (LauncherError, OSError) as error:
             return ProofVerdict(variant, reason_of(error))
-    return ProofVerdict(variant, _complaint(variant, result.steps), result)
+    return ProofVerdict(variant, _complaint(variant, steps), seed)
 
 
 class _DecidedError(Exception):
     """A step has failed: what comes after it proves nothing."""
 
 
-async def _until_it_fails(variant: Variant, places: Places, domain: int, seed: int) -> LessonResult:
+async def _until_it_fails(variant: Variant, places: Places, domain: int, seed: int) -> list[StepResult]:
     """Judge a variant up to the first step that does not pass, or to the one that must not."""
     steps: list[StepResult] = []
 
@@ -170,11 +163,9 @@ async def _until_it_fails(variant: Variant, places: Places, domain: int, seed: i
             raise _DecidedError
 
     with suppress(_DecidedError):
-        until = variant.fails_at or ""
         async with trial(variant.lesson, places, seed=seed, domain=domain) as judge:
-            await judge.once(until=until, on_step=take)
-    values = draw(variant.lesson.profile.values, seed)
-    return LessonResult(seed, values, tuple(steps))
+            await judge.once(take, until=variant.fails_at or "")
+    return steps
 
 
 def _complaint(variant: Variant, steps: Sequence[StepResult]) -> str:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from course.lessons.mistakes import WRONG
+from course.folder.folder import node_text
+from course.lessons.lesson import WRONG
 from launcher.errors import UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from text.sentences import say
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _LESSON = """\
 title: {en: My lesson, ru: Мой урок}
@@ -79,40 +77,15 @@ A timer calls a method every so many seconds.
 **Задание**: публикуйте дважды в секунду.
 """,
 }
-_NODE = """\
-import rclpy
-from rclpy.executors import ExternalShutdownException
-from rclpy.node import Node
-from std_msgs.msg import String
-
-
-class Talker(Node):
-    def __init__(self):
-        super().__init__("talker")
-{body}
-
-    def talk(self):
-        self.publisher.publish(String(data="hello"))
-
-
-def main():
-    rclpy.init()
-    node = Talker()
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
-
-
-if __name__ == "__main__":
-    main()
-"""
 _SOLUTION = """\
         self.publisher = self.create_publisher(String, "/chatter", 10)
         self.create_timer(0.5, self.talk)"""
+_TALKS = """
+
+    def talk(self):
+        self.publisher.publish(String(data="hello"))"""
+_IMPORTS = "from std_msgs.msg import String\n"
+_MISSING = "        # Missing: a publisher of String on /chatter, and a timer that calls talk."
 _MISTAKES = """\
 What beginners get wrong, as changes of solution/: each must fail at its step, and pass those before it.
 
@@ -131,10 +104,8 @@ _FILES = {
     "text.en.md": _TEXT["en"],
     "text.ru.md": _TEXT["ru"],
     "starter/lesson.yaml": _PROFILE,
-    "starter/talker.py": _NODE.format(
-        body="        # Missing: a publisher of String on /chatter, and a timer that calls talk."
-    ),
-    "solution/talker.py": _NODE.format(body=_SOLUTION),
+    "starter/talker.py": node_text("talker", _MISSING + _TALKS, _IMPORTS),
+    "solution/talker.py": node_text("talker", _SOLUTION + _TALKS, _IMPORTS),
     WRONG: _MISTAKES,
 }
 

@@ -6,28 +6,23 @@ import asyncio
 import contextlib
 import random
 import shutil
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
-from course.judge.judge import judging
-from course.lessons.lesson import IGNORED
+from course.judge.judge import Judge, judging
+from course.lessons.lesson import IGNORED, LessonFolder
 from launcher.client.client import launch
+from launcher.client.start import StartingSupervisor
 from launcher.domain.domain import LAST_SAFE_DOMAIN, default_domain
-from launcher.errors import LauncherError
+from launcher.errors import LauncherError, UsageError
 from launcher.profile.defaults import FOLDERS_OWN
 from launcher.profile.load import load_profile
+from launcher.profile.model import Profile
+from launcher.profile.node import Node
 from launcher.runs.record import supervisors
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
-    from typing import Any
-
-    from course.judge.judge import Judge
-    from course.lessons.lesson import LessonFolder
-    from launcher.client.start import StartingSupervisor
-    from launcher.profile.model import Profile
-    from launcher.profile.node import Node
+from text.sentences import say
 
 PARTING_S = 12.0
 """How long the nodes may take to end when all has been judged."""
@@ -111,9 +106,9 @@ def _at_home(profile: Profile, lesson: LessonFolder, places: Places) -> Profile:
 
     def at_home(node: Node) -> Node:
         if node.is_ours:
-            return node.model_copy(update={"cwd": node.cwd or str(lesson.starter)})
+            return replace(node, cwd=node.cwd or str(lesson.starter))
         env = {**places.environment, **node.env}
-        return node.model_copy(update={"cwd": node.cwd or str(places.files), "env": env})
+        return replace(node, cwd=node.cwd or str(places.files), env=env)
 
     nodes = {name: at_home(node) for name, node in profile.nodes.items()}
     return profile.model_copy(update={"discovery": "localhost", "nodes": nodes})
@@ -123,7 +118,12 @@ def unused_domains(count: int) -> list[int]:
     """Return so many domains in which no session of this user runs, nor would by default.
 
     They are drawn, so that two proofs at the same time hardly ever meet.
+
+    Raises:
+        UsageError: if there is none.
     """
     taken = {default_domain(), *(one.domain for one in supervisors())}
     free = [domain for domain in range(1, LAST_SAFE_DOMAIN + 1) if domain not in taken]
+    if not free:
+        raise UsageError(say("no ROS domain is free: `deck ps` shows what runs in them, `deck down` stops it"))
     return random.SystemRandom().sample(free, min(count, len(free)))

@@ -5,18 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from text.os_words import os_reason
-from text.sentences import Words, say
+from text.sentences import SaidError, Words, say
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
-class BagError(Exception):
+class BagError(SaidError):
     """A bag cannot be written or read; `words` says which one, why, and what to do."""
-
-    def __init__(self, words: Words) -> None:
-        super().__init__(words)
-        self.words = words
 
 
 def not_made(folder: Path, error: OSError) -> BagError:

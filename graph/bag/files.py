@@ -6,7 +6,7 @@ import os
 import re
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PureWindowsPath
 from typing import Any, BinaryIO, NamedTuple
 
@@ -51,23 +51,14 @@ class Offer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class StatedTopic:
-    """A topic in the metadata."""
-
-    name: str
-    messages: int
-    offer: Offer
-
-
-@dataclass(frozen=True)
 class Stated:
     """What a bag's `metadata.yaml` says, of any version of rosbag2, as far as it can be understood."""
 
-    storage: str = ""
     files: tuple[str, ...] = ()
     """Names of its files: the first rosbag2 put the folder in front, readers ignore that."""
     messages: int | None = None
-    topics: tuple[StatedTopic, ...] = ()
+    offers: Mapping[str, Offer] = field(default_factory=dict)
+    """Of each topic that is named."""
     seconds: float | None = None
     compression: str = ""
     """Of files or messages: `zstd`; empty for none."""
@@ -126,8 +117,9 @@ def _files(path: Path) -> BagFiles:
     if not named:
         _refuse_foreign(path, [*found.values()])
         raise _no_bag(path, say("it has neither metadata.yaml nor an .mcap file"))
-    if stated is not None:
-        _refuse_unknown(path, stated, named)
+    if stated is not None and stated.compression.lower() not in {"", ZSTD}:
+        words = say("it is packed by {kind}, and only zstd is known", kind=stated.compression)
+        raise BagError(say("{path} cannot be read: {reason}", path=path, reason=words))
     return BagFiles(path, stated, tuple(named), tuple(others), tuple(missing))
 
 
@@ -164,23 +156,6 @@ def _refuse_foreign(path: Path, files: list[Path]) -> None:
     for file in files:
         if (other := foreign(file)) is not None:
             raise BagError(say("{path} cannot be read: {reason}", path=path, reason=other))
-
-
-def _refuse_unknown(path: Path, stated: Stated, files: list[Path]) -> None:
-    """Raise BagError for a storage or packing that Deck does not read."""
-    if stated.compression.lower() not in {"", ZSTD}:
-        kind = stated.compression
-        raise BagError(
-            say("{path} cannot be read: it is packed by {kind}, and only zstd is known", path=path, kind=kind)
-        )
-    if stated.storage not in {"", MCAP, SQLITE} and not any(storage_of(file) for file in files):
-        words = say(
-            "{path}: storage {storage!r} is not known, only mcap and sqlite3; where ROS is "
-            "installed with its plugin, `ros2 bag convert` makes one of the other",
-            path=path,
-            storage=stated.storage,
-        )
-        raise BagError(words)
 
 
 # What a file is.
@@ -274,23 +249,15 @@ def stated_in(folder: Path) -> Stated | None:
     if not isinstance(inner, Mapping):
         return Stated(trouble=say("metadata.yaml is damaged: only the files themselves count"))
     nanoseconds = _whole(_within(inner, "duration").get("nanoseconds"))
-    topics = _listed(inner.get("topics_with_message_count"))
+    topics = [_within(each, "topic_metadata") for each in _listed(inner.get("topics_with_message_count"))]
     packed = _text(inner.get("compression_mode")).lower() not in {"", "none"}
     return Stated(
-        storage=_text(inner.get("storage_identifier")),
         files=tuple(PureWindowsPath(str(name)).name for name in _listed(inner.get("relative_file_paths"))),
         messages=_whole(inner.get("message_count")),
-        topics=tuple(_topic(each) for each in topics if "name" in _within(each, "topic_metadata")),
+        offers={_text(each["name"]): offer_in(each.get("offered_qos_profiles")) for each in topics if "name" in each},
         seconds=None if nanoseconds is None else nanoseconds / 1e9,
         compression=_text(inner.get("compression_format")) if packed else "",
         distro=_text(inner.get("ros_distro")),
-    )
-
-
-def _topic(each: Any) -> StatedTopic:  # noqa: ANN401 - a mapping of YAML
-    about = _within(each, "topic_metadata")
-    return StatedTopic(
-        _text(about["name"]), _whole(each.get("message_count")) or 0, offer_in(about.get("offered_qos_profiles"))
     )
 
 

@@ -69,7 +69,7 @@ def _listed(path: Path) -> ListedBag | None:
     if held < stated.messages:
         broken = count_words(stated.messages, held)
     messages = min(held, stated.messages)
-    return ListedBag(path.name, path, size, changed_s, stated.seconds, len(stated.topics), messages, broken)
+    return ListedBag(path.name, path, size, changed_s, stated.seconds, len(stated.offers), messages, broken)
 
 
 def _counted(file: Path) -> int | None:

@@ -1,21 +1,17 @@
-"""The files of a bag: MCAP read chunk by chunk with the library `mcap`, SQLite with `rosbags`.
+"""The files of a bag: MCAP read with the library `mcap`, SQLite with `rosbags`.
 
-An MCAP chunk with a single wrong byte is left out and counted, all others are read. A damaged SQLite file is refused.
+What is damaged is read as far as it goes, an SQLite file not at all; `graph.bag.reading` counts what is missing.
 """
 
 from __future__ import annotations
 
-import heapq
-import struct
 import sys
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import ExitStack
-from io import BytesIO
-from operator import itemgetter
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, TypeAlias
 from urllib.parse import quote
 
 from graph.bag import files
@@ -30,7 +26,7 @@ else:
 
 if TYPE_CHECKING:
     from mcap.records import Channel as ChannelRecord
-    from mcap.records import ChunkIndex, Schema
+    from mcap.records import Message, Schema
     from mcap.summary import Summary
     from rosbags.interfaces import Connection
 
@@ -39,17 +35,6 @@ Found: TypeAlias = "tuple[int, int, bytes]"
 """Unix time in nanoseconds, number of the channel, raw message."""
 ROS2_SCHEMAS = {"ros2msg": False, "ros2idl": True, "omgidl": True, "": False}
 """Encoding of a schema that ROS 2 writes, to whether it is IDL."""
-SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 3, 4, 5, 6, 15
-"""Codes of records of MCAP (source: https://mcap.dev/spec)."""
-FOOTER, PRIVATE = 2, 0x80
-"""Codes from `PRIVATE` on are free for private use."""
-HEAD = struct.Struct("<BQ")
-MESSAGE_HEAD = struct.Struct("<HIQQ")
-INDEX_HEAD, INDEX_ENTRY = HEAD.size + 6, 16
-"""Bytes of a message index: of one channel in a chunk, and of each of its messages."""
-LONGEST_LOOSE = 4_000_000
-"""Bytes of messages outside of chunks that are read at once."""
-NOBODY = -1
 STEP_BYTES = 65_536
 
 
@@ -64,27 +49,6 @@ class Channel(NamedTuple):
     """How its messages are written. Only ROS 2's own, CDR, can be decoded and published."""
     offer: files.Offer = files.Offer()
     """QoS offered by its first publisher."""
-
-
-class Lost(NamedTuple):
-    """A place of a file that cannot be read."""
-
-    at_ns: int
-    """Unix time of its first message, or of the last one before it."""
-    messages: int | None
-    """How many messages it held, None if that is not known."""
-
-
-class Stretch(NamedTuple):
-    """A chunk, or messages outside of chunks that follow one another."""
-
-    offset: int
-    length: int
-    first_ns: int
-    last_ns: int
-    channels: Collection[int]
-    messages: int
-    is_chunk: bool = True
 
 
 def opened(file: Path) -> BagPart:
@@ -142,7 +106,6 @@ class SqlitePart:
     stack: ExitStack
     said: int | None = None
     cut_bytes: int | None = None
-    lost: Sequence[Lost] = ()
 
     def __init__(self, file: Path, content: Path, stack: ExitStack) -> None:
         """Read `content`, which is called `file`. Raises BagError and what the library raises."""
@@ -207,153 +170,84 @@ def _channel_of_table(connection: Connection) -> Channel:
 
 
 class McapPart:
-    """An open MCAP file. Its summary is taken only if it accounts for every message; else all of it is read once."""
+    """An open MCAP file: read by its summary if it has one of all its chunks, else from its beginning each time."""
 
     stack: ExitStack
 
     def __init__(self, file: Path, content: Path, stack: ExitStack) -> None:
-        """Read `content`, which is called `file`. Raises ValueError and OSError."""
-        self.file = file
-        self.said: int | None = None
-        """How many messages it holds by its own count, None if it keeps none."""
-        self.cut_bytes: int | None = None
-        """Length of what cannot be read at the end of a file without an end; None for a whole one."""
-        self._lost: dict[int, Lost] = {}
-        """Offset in the file to what is lost there."""
-        self._stream = stack.enter_context(content.open("rb"))
-        self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, ChannelRecord] = {}
-        self._counts: Counter[int] = Counter()
-        self._stretches: list[Stretch] = []
-        summary = summary_of(self._stream)
-        if summary is not None:
-            self._schemas, self._channels = summary.schemas, summary.channels
-            self.said = summary.statistics.message_count if summary.statistics else None
-        if summary is None or not self._take_summary(summary):
-            self._scan(content.stat().st_size)
-        self.channels: Sequence[Channel] = [
-            _channel_of_mcap(channel, self._schemas.get(channel.schema_id), self._counts[number])
-            for number, channel in sorted(self._channels.items())
-        ]
-        self.start_ns = min((stretch.first_ns for stretch in self._stretches), default=0)
-        """Unix time of the first message, 0 if there is none."""
-        self.end_ns = max((stretch.last_ns for stretch in self._stretches), default=0)
+        """Read `content`, which is called `file`. Raises what the library raises, and OSError."""
+        from mcap.reader import SeekingReader
 
-    @property
-    def lost(self) -> Sequence[Lost]:
-        """What has turned out to be damaged so far; grows while messages are read."""
-        return list(self._lost.values())
+        self.file = file
+        self.cut_bytes: int | None = None
+        """Length of what cannot be read at the end; None if everything can, as far as is known."""
+        self._content = content
+        self._reader = SeekingReader(stack.enter_context(content.open("rb")), validate_crcs=True)
+        summary = None
+        with suppress(Exception):  # whatever is wrong with it, the file itself tells
+            summary = self._reader.get_summary()
+        facts = summary.statistics if summary else None
+        self.said = facts.message_count if facts else None
+        """How many messages it holds by its own count, None if it keeps none."""
+        self._is_indexed = bool(summary and facts and 0 < facts.chunk_count == len(summary.chunk_indexes))
+        if summary and facts and self._is_indexed:
+            schemas, channels, counts = summary.schemas, summary.channels, facts.channel_message_counts
+            self.start_ns, self.end_ns = facts.message_start_time, facts.message_end_time
+            """Unix time of the first message and of the last, 0 if there is none."""
+        else:
+            schemas, channels, counts = self._scan()
+        self.channels: Sequence[Channel] = [
+            _channel_of_mcap(channel, schemas.get(channel.schema_id), counts.get(number, 0))
+            for number, channel in sorted(channels.items())
+        ]
 
     def messages(self, start_ns: int | None, numbers: Collection[int]) -> Iterator[Found]:
-        """Yield messages of these channels in the order of their times."""
+        """Yield messages of these channels in the order of their times, up to the first damaged place."""
         wanted, begin_ns = frozenset(numbers), start_ns or 0
-        stretches = (
-            self._of(stretch)
-            for stretch in self._stretches
-            if stretch.last_ns >= begin_ns and not wanted.isdisjoint(stretch.channels)
-        )
-        for found in heapq.merge(*stretches, key=itemgetter(0)):
-            if found[1] in wanted and found[0] >= begin_ns:
-                yield found
+        with suppress(Exception):  # the disk, a decompressor, or the content: who reads counts what has come
+            for message in self._indexed(begin_ns, wanted) if self._is_indexed else self._streamed():
+                if message.channel_id in wanted and message.log_time >= begin_ns:
+                    yield message.log_time, message.channel_id, message.data
 
-    def _of(self, stretch: Stretch) -> Iterator[Found]:
-        # The merge takes one from each before it begins; not all should be read by then.
-        yield stretch.first_ns, NOBODY, b""
-        try:
-            self._stream.seek(stretch.offset)
-            raw = self._stream.read(stretch.length)
-            found, _described = _split(_content(raw) if stretch.is_chunk else raw)
-        except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
-            self._lost.setdefault(stretch.offset, Lost(stretch.first_ns, stretch.messages))
-            return
-        found.sort(key=itemgetter(0))
-        yield from found
+    def _indexed(self, begin_ns: int, wanted: Collection[int]) -> Iterator[Message]:
+        topics = {channel.topic for channel in self.channels if channel.number in wanted}
+        return (message for _schema, _channel, message in self._reader.iter_messages(topics, starting_at=begin_ns))
 
-    def _take_summary(self, summary: Summary) -> bool:
-        """Take what the summary says, unless it does not account for every message."""
-        said = summary.statistics
-        stretches = [_indexed(chunk) for chunk in summary.chunk_indexes]
-        held = sum(stretch.messages for stretch in stretches)
-        if said is None or said.chunk_count != len(stretches) or said.message_count != held:
-            return False
-        self._counts.update(said.channel_message_counts)
-        self._stretches = [stretch for stretch in stretches if stretch.messages]
-        return self._counts.total() == held and self._counts.keys() <= summary.channels.keys()
+    def _streamed(self) -> Iterator[Message]:
+        from mcap.records import Message
 
-    def _scan(self, size: int) -> None:
-        """Read the file record by record, up to its end or to where it is cut or broken."""
-        self._counts.clear()
-        self._stretches, last_ns, behind = [], 0, len(files.MCAP_MAGIC)
-        while True:
-            at = self._stream.seek(behind)
-            head = self._stream.read(HEAD.size)
-            code, length = HEAD.unpack(head) if len(head) == HEAD.size else (0, 0)
-            behind = at + HEAD.size + length
-            if behind > size or not (0 < code <= DATA_END or code >= PRIVATE) or code in {FOOTER, DATA_END}:
-                break
+        with self._content.open("rb") as stream:
+            yield from (record for record in _records(stream) if isinstance(record, Message))
+
+    def _scan(self) -> tuple[dict[int, Schema], dict[int, ChannelRecord], Counter[int]]:
+        """Read all of it; return its schemas and channels by their numbers, and how many messages each has."""
+        from mcap.records import Channel, Message, Schema
+
+        schemas: dict[int, Schema] = {}
+        channels: dict[int, ChannelRecord] = {}
+        counts, at = Counter[int](), 0
+        self.start_ns = self.end_ns = 0
+        with self._content.open("rb") as stream:
             try:
-                self._take(code, at, length)
-            except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
-                self._lost[at] = Lost(last_ns, None)
-            last_ns = max(last_ns, self._stretches[-1].last_ns if self._stretches else 0)
-        if files.has_end(self._stream):
-            if code not in {FOOTER, DATA_END}:
-                self._lost[at] = Lost(last_ns, None)
-        else:
-            self.cut_bytes = size - at
-        if self._lost and self.said is not None:
-            # What the file counts and nobody has found is what the damaged places held.
-            first = min(self._lost)
-            missing = max(0, self.said - self._counts.total())
-            self._lost = {place: lost._replace(messages=0) for place, lost in self._lost.items()}
-            self._lost[first] = self._lost[first]._replace(messages=missing)
+                for record in _records(stream):
+                    at = stream.tell()
+                    if isinstance(record, Message):
+                        counts[record.channel_id] += 1
+                        self.start_ns = min(self.start_ns or record.log_time, record.log_time)
+                        self.end_ns = max(self.end_ns, record.log_time)
+                    elif isinstance(record, Channel):
+                        channels[record.id] = record
+                    elif isinstance(record, Schema):
+                        schemas[record.id] = record
+            except Exception:  # noqa: BLE001 - as in `messages`
+                self.cut_bytes = self._content.stat().st_size - at
+        return schemas, channels, counts
 
-    def _take(self, code: int, at: int, length: int) -> None:
-        if code in {SCHEMA, CHANNEL}:
-            self._describe(code, self._stream.read(length))
-        elif code == CHUNK:
-            body = self._stream.read(length)
-            found, described = _split(_content(body))
-            for each in described:
-                self._describe(*each)
-            if found:
-                counts = Counter(number for _stamp_ns, number, _raw in found)
-                stamps = [stamp_ns for stamp_ns, _number, _raw in found]
-                self._counts.update(counts)
-                self._stretches.append(
-                    Stretch(at + HEAD.size, length, min(stamps), max(stamps), counts.keys(), len(found))
-                )
-        elif code == MESSAGE:
-            number, _sequence, stamp_ns, _sent_ns = MESSAGE_HEAD.unpack(self._stream.read(MESSAGE_HEAD.size))
-            self._counts[number] += 1
-            self._take_loose(at, HEAD.size + length, number, stamp_ns)
 
-    def _take_loose(self, at: int, length: int, number: int, stamp_ns: int) -> None:
-        """Add a message outside of chunks to the stretch before it, or begin another."""
-        last = self._stretches[-1] if self._stretches else None
-        if last is None or last.is_chunk or last.offset + last.length != at or last.length > LONGEST_LOOSE:
-            self._stretches.append(Stretch(at, length, stamp_ns, stamp_ns, {number}, 1, is_chunk=False))
-        else:
-            self._stretches[-1] = last._replace(
-                length=last.length + length,
-                first_ns=min(last.first_ns, stamp_ns),
-                last_ns=max(last.last_ns, stamp_ns),
-                channels={*last.channels, number},
-                messages=last.messages + 1,
-            )
+def _records(stream: BinaryIO) -> Iterator[Any]:
+    from mcap.stream_reader import StreamReader
 
-    def _describe(self, code: int, body: bytes) -> None:
-        """Take the record of a schema or a channel."""
-        from mcap import records
-        from mcap.data_stream import ReadDataStream
-
-        stream = ReadDataStream(BytesIO(body))
-        if code == SCHEMA:
-            schema = records.Schema.read(stream)
-            self._schemas[schema.id] = schema
-        else:
-            channel = records.Channel.read(stream)
-            self._channels[channel.id] = channel
+    return StreamReader(stream, validate_crcs=True).records
 
 
 BagPart: TypeAlias = "McapPart | SqlitePart"
@@ -367,59 +261,6 @@ def summary_of(stream: BinaryIO) -> Summary | None:
         return SeekingReader(stream).get_summary()
     except Exception:  # noqa: BLE001 - whatever is wrong with it, the file itself tells
         return None
-
-
-def _indexed(chunk: ChunkIndex) -> Stretch:
-    indexes = chunk.message_index_offsets.keys()
-    return Stretch(
-        chunk.chunk_start_offset + HEAD.size,
-        chunk.chunk_length - HEAD.size,
-        chunk.message_start_time,
-        chunk.message_end_time,
-        indexes,
-        (chunk.message_index_length - INDEX_HEAD * len(indexes)) // INDEX_ENTRY,
-    )
-
-
-def _content(body: bytes) -> bytes:
-    """Return the records in a chunk. Raises any exception if its framing is wrong, or its checksum."""
-    from mcap.data_stream import ReadDataStream
-    from mcap.records import Chunk
-    from mcap.stream_reader import get_chunk_data_stream
-
-    chunk = Chunk.read(ReadDataStream(BytesIO(body)))
-    stream, length = get_chunk_data_stream(chunk, validate_crc=True)
-    content = stream.read(length)
-    if length != chunk.uncompressed_size:
-        raise ValueError("a chunk is not as long as it says")
-    if not chunk.uncompressed_crc:
-        for stamp_ns, _number, _raw in _split(content)[0]:
-            if not chunk.message_start_time <= stamp_ns <= chunk.message_end_time:
-                raise ValueError("a message is of another time than its chunk")
-    return content
-
-
-def _split(content: bytes) -> tuple[list[Found], list[tuple[int, bytes]]]:
-    """Return the messages among some records, and the records of schemas and channels.
-
-    The library's own way takes ten times as long. Raises ValueError if there is something else among them, or a
-    single byte of their framing is wrong: nothing vouches then for those that look right.
-    """
-    found: list[Found] = []
-    described = []
-    at = 0
-    while at < len(content):
-        code, length = HEAD.unpack_from(content, at)
-        begin = at + HEAD.size
-        at = begin + length
-        if at > len(content) or code not in {SCHEMA, CHANNEL, MESSAGE}:
-            raise ValueError("there is no record where one should be")
-        if code == MESSAGE:
-            number, _sequence, stamp_ns, _sent_ns = MESSAGE_HEAD.unpack_from(content, begin)
-            found.append((stamp_ns, number, content[begin + MESSAGE_HEAD.size : at]))
-        else:
-            described.append((code, content[begin:at]))
-    return found, described
 
 
 def _channel_of_mcap(channel: ChannelRecord, schema: Schema | None, messages: int) -> Channel:

@@ -6,7 +6,6 @@ two publishers of one sensor are worse than none.
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -19,7 +18,7 @@ from text.sentences import say
 
 if TYPE_CHECKING:
     import threading
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Callable, Collection
 
     from rclpy.publisher import Publisher
 
@@ -38,8 +37,6 @@ FOUND_AT_LAST_S = 6.0
 POLLED_S = 0.05
 LOOK_S = 0.25
 """How often to look for other publishers of the topics."""
-NAMED_WITHIN_S = 3.0
-"""A publisher is discovered before the name of its node, a moment or, if that is lost, 3 s."""
 TELL_S = 1.0
 ACKED_WITHIN_S = 2.0
 SHARED = frozenset({"/rosout"})
@@ -67,24 +64,19 @@ class BagPublisher:
         refusal: Callable[[TopicInBag], str | None],
         stopped_by_zeros: Collection[str] = (),
         *,
-        names: Mapping[str, str] | None = None,
         gives_way: bool = True,
     ) -> None:
         """`refusal` returns why a topic must not be published, None for those that may be.
 
-        `stopped_by_zeros`: types for which an empty message is sent at the end. `names`: topics
-        that are published under another name. Without `gives_way`, a topic is also published
-        beside another node that does so.
+        `stopped_by_zeros`: types for which an empty message is sent at the end. Without `gives_way`, a topic is also
+        published beside another node that does so.
         """
-        self._names = names or {}
         self._gives_way = gives_way
         self.progress = PublishingProgress()
         self._bag = bag
         self._ros = ros
         self._stopped_by_zeros = frozenset(stopped_by_zeros)
         self._publishers: dict[str, tuple[TopicInBag, Publisher]] = {}
-        self._given_up_s: dict[str, float] = {}
-        """Topics left to nodes whose names are not known yet, and since when."""
         for topic in bag.topics:
             reason = refusal(topic)
             if reason is None and topic.messages:
@@ -112,8 +104,6 @@ class BagPublisher:
             if settled or now_s >= begun_s + FOUND_AT_LAST_S:
                 break
         self._give_way()
-        while self._given_up_s and not stop.wait(POLLED_S):
-            self._name_others()
 
     def play(
         self,
@@ -123,36 +113,28 @@ class BagPublisher:
         rate: float = 1.0,
         start_s: float = 0.0,
         loop: bool = False,
-        until_s: float = math.inf,
     ) -> None:
         """Publish once, or with `loop` until `stop`; report the progress each second.
 
-        `start_s` and `until_s` are places in the bag: the first time begins and all end there.
+        `start_s` is the place in the bag where the first time begins.
 
         Raises BagError if the bag turns out to be damaged.
         """
         try:
-            self._once(stop, tell, rate, start_s, until_s)
+            self._once(stop, tell, rate, start_s)
             while loop and not stop.is_set() and self._publishers:
-                self._once(stop, tell, rate, 0.0, until_s)
+                self._once(stop, tell, rate, 0.0)
         finally:
             self._end()
 
     def _once(
-        self,
-        stop: threading.Event,
-        tell: Callable[[PublishingProgress], None],
-        rate: float,
-        start_s: float,
-        until_s: float,
+        self, stop: threading.Event, tell: Callable[[PublishingProgress], None], rate: float, start_s: float
     ) -> None:
         bag = self._bag
         begin_ns = bag.start_ns + round(start_s * 1e9)
         self._latched_before(begin_ns)
         begun_s = look_s = tell_s = time.monotonic()
         for topic, stamp_ns, raw in bag.messages(begin_ns, list(self._publishers)):
-            if (stamp_ns - bag.start_ns) / 1e9 > until_s:
-                return
             due_s = begun_s + (stamp_ns - begin_ns) / 1e9 / rate
             while not stop.is_set():
                 now_s = time.monotonic()
@@ -199,12 +181,11 @@ class BagPublisher:
             return
         qos = Qos(topic.reliability or "reliable", topic.durability or "volatile")
         try:
-            name = self._names.get(topic.name, topic.name)
-            validate_full_topic_name(name)
+            validate_full_topic_name(topic.name)
             kind = load_message(topic.kind.name)
-            publisher = self._ros.node.create_publisher(kind, name, profile(qos, DEPTH))
+            publisher = self._ros.node.create_publisher(kind, topic.name, profile(qos, DEPTH))
         except UnknownTypeError as error:
-            self.progress.left_out[topic.name] = error.reason
+            self.progress.left_out[topic.name] = error.words
         except InvalidTopicNameException:
             # Programs outside ROS write MCAP files, too.
             self.progress.left_out[topic.name] = say("not a valid name of a ROS topic")
@@ -234,19 +215,12 @@ class BagPublisher:
             return
         node = self._ros.node
         for name in self._publishers.keys() - SHARED:
-            if node.handle.get_count_publishers(name) >= 2 and self._others(name):
+            if node.handle.get_count_publishers(name) >= 2 and (others := self._others(name)):
                 node.destroy_publisher(self._publishers.pop(name)[1])
-                self._given_up_s[name] = time.monotonic()
-        self._name_others()
-
-    def _name_others(self, *, at_last: bool = False) -> None:
-        """Say who publishes the topics that were given up, as soon as that is known."""
-        for name, since_s in list(self._given_up_s.items()):
-            waited_s = math.inf if at_last else time.monotonic() - since_s
-            reason = left_to(self._others(name), waited_s)
-            if reason is not None:
-                del self._given_up_s[name]
-                self.progress.left_out[name] = reason
+                # A publisher is discovered a moment before the name of its node.
+                named = ", ".join(each for each in others if not each.endswith(NAMELESS))
+                left = say("{node} publishes it", node=named) if named else say("another program publishes it")
+                self.progress.left_out[name] = left
 
     def _others(self, topic: str) -> list[str]:
         """Return the full names of the other nodes that publish it."""
@@ -260,19 +234,7 @@ class BagPublisher:
             if topic.kind.name in self._stopped_by_zeros:
                 publisher.publish(load_message(topic.kind.name)())
         self._ros.wait_until_heard(ACKED_WITHIN_S)
-        self._name_others(at_last=True)
 
 
 def _latched(topic: TopicInBag) -> bool:
     return topic.durability == "transient_local"
-
-
-def left_to(others: Collection[str], waited_s: float) -> str | None:
-    """Return who publishes the topic, as translatable words; None while that may become known.
-
-    `others`: full names of the nodes; a name not known yet ends with NAMELESS.
-    """
-    named = [name for name in others if not name.endswith(NAMELESS)]
-    if named:
-        return say("{node} publishes it", node=", ".join(named))
-    return say("another program publishes it") if waited_s > NAMED_WITHIN_S else None

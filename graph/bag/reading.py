@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from graph.bag.errors import BagError, unreadable
 from graph.bag.files import SUFFIXES, BagFiles, Offer, Stated, files_of
-from graph.bag.parts import CDR, BagPart, Channel, Lost, opened, unpacked
+from graph.bag.parts import CDR, BagPart, Channel, opened, unpacked
 from graph.messages.definitions import TypeText
 from text.sentences import Words, say
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from typing_extensions import Self
-
-NAMED = 5
-"""So many topics are named in a sentence; of more only the number."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ class TopicInBag:
 class Note(NamedTuple):
     """Something about a bag that whoever opens it has to know."""
 
-    words: Words
+    words: str
     incomplete: bool = False
     """Whether messages are missing that the recording should have."""
 
@@ -96,9 +93,8 @@ class Bag:
         """Every topic, sorted by name, those in other serialization formats too."""
         self.topics = tuple(topic for topic in self.all_topics if topic.encoding == CDR)
         """Every topic of ROS 2, sorted by name."""
-        self._not_unpacked: set[tuple[int, int, int]] = set()
-        """Part, channel and time of each message that is packed and damaged."""
-        self._fewer: Words | None = None
+        self.damage: Words | None = None
+        """What has turned out to be missing when all was read."""
         with_messages = [part for part in parts if part.end_ns]
         self.start_ns = min((part.start_ns for part in with_messages), default=0)
         self.end_ns = max((part.end_ns for part in with_messages), default=0)
@@ -110,25 +106,6 @@ class Bag:
         return self.path.stem if self.path.suffix in SUFFIXES else self.path.name
 
     @property
-    def damage(self) -> Words | None:
-        """What has been left out so far as unreadable; grows while messages are read."""
-        lost = [lost for part in self._parts for lost in part.lost]
-        lost += (Lost(stamp_ns, 1) for _part, _number, stamp_ns in self._not_unpacked)
-        if not lost:
-            return self._fewer
-        count: int | Words = sum(each.messages or 0 for each in lost)
-        if any(each.messages is None for each in lost):
-            count = say("at least {count}", count=count) if count else say("how many cannot be known")
-        return say(
-            "{path} is damaged: messages lost: {messages}, damaged places: {places}, the first "
-            "{seconds:.1f} s after the beginning. All others are played",
-            path=self.path,
-            messages=count,
-            places=len(lost),
-            seconds=max(0, min(each.at_ns for each in lost) - self.start_ns) / 1e9,
-        )
-
-    @property
     def length_s(self) -> float:
         """Seconds from the first message to the last."""
         return (self.end_ns - self.start_ns) / 1e9
@@ -138,8 +115,8 @@ class Bag:
     ) -> Iterator[tuple[TopicInBag, int, bytes]]:
         """Yield topic, unix time in nanoseconds and raw message in the order of their times.
 
-        `names`: of which topics, all if empty. What is damaged is left out, see `damage`. Raises BagError for a
-        database that turns out to be damaged.
+        `names`: of which topics, all if empty. A file is read up to where it is damaged, see `damage`. Raises
+        BagError for a database that turns out to be damaged.
         """
         wanted = [topic for topic in self.topics if not names or topic.name in names]
         parts = (self._of_part(place, start_ns, frozenset(wanted)) for place in range(len(self._parts)))
@@ -150,9 +127,8 @@ class Bag:
                 read += 1
         if start_ns is None or start_ns <= self.start_ns:
             said = sum(topic.messages for topic in wanted)
-            lost = sum(lost.messages or 0 for part in self._parts for lost in part.lost)
-            if read + lost + len(self._not_unpacked) < said:
-                self._fewer = say(
+            if read < said:
+                self.damage = say(
                     "{path} is damaged: of {said} messages only {read} could be read",
                     path=self.path,
                     said=said,
@@ -171,10 +147,7 @@ class Bag:
             if (topic := self._topics[place, channel.number]) in wanted
         }
         for stamp_ns, number, raw in part.messages(start_ns, numbers):
-            message = unpacked(raw)
-            if message is None:
-                self._not_unpacked.add((place, number, stamp_ns))
-            else:
+            if (message := unpacked(raw)) is not None:
                 yield numbers[number], stamp_ns, message
 
     def close(self) -> None:
@@ -193,7 +166,7 @@ def _topics(stated: Stated | None, parts: Sequence[BagPart]) -> Mapping[tuple[in
     """Return for part and channel the topic that it belongs to."""
     channels = {(place, channel.number): channel for place, part in enumerate(parts) for channel in part.channels}
     texts = {each.kind.name: each.kind for each in channels.values() if each.kind.text}
-    offers = {topic.name: topic.offer for topic in stated.topics} if stated else {}
+    offers = stated.offers if stated else {}
     merged: dict[tuple[str, TypeText, str], TopicInBag] = {}
     keys = {}
     for place, channel in channels.items():
@@ -230,20 +203,19 @@ def _notes_on(files: BagFiles, parts: Sequence[BagPart]) -> Iterator[Note]:
             yield Note(words, incomplete=not files.stated.messages)
         for file in files.others:
             yield Note(say("{file} is not read: metadata.yaml does not name it", file=file.name))
-        yield from _counts(files.stated, channels, cut=any(part.cut_bytes is not None for part in parts))
+        yield from _counts(files.stated, channels)
     for part in parts:
         held = sum(channel.messages for channel in part.channels)
         if part.cut_bytes is not None:
-            # Of a split recording others may follow it.
             words = say(
-                "{path} was cut short: the recording was not ended properly. {messages} messages "
-                "are intact, the last {bytes} bytes are damaged, and nothing follows them",
+                "{path} was cut short, or is damaged: {messages} messages are intact, the last {bytes} bytes cannot "
+                "be read",
                 path=files.path if len(parts) == 1 else part.file.name,
                 messages=held,
                 bytes=part.cut_bytes,
             )
             yield Note(words, incomplete=True)
-        if part.said is not None and held + sum(lost.messages or 0 for lost in part.lost) < part.said:
+        if part.said is not None and held < part.said:
             words = say(
                 "{file} counts {said} messages of its own, and holds {held}",
                 file=part.file.name,
@@ -260,40 +232,17 @@ def _foreign(channels: Sequence[Channel]) -> Iterator[Note]:
         if channel.encoding != CDR:
             foreign[f"{channel.topic} ({channel.encoding}"] += channel.messages
     if foreign:
-        named = [f"{topic}: {count})" for topic, count in sorted(foreign.items())]
-        yield Note(say("left out, since their serialization format is not ROS 2's: {topics}", topics=_some(named)))
+        named = ", ".join(f"{topic}: {count})" for topic, count in sorted(foreign.items()))
+        yield Note(say("left out, since their serialization format is not ROS 2's: {topics}", topics=named))
 
 
-def _counts(stated: Stated, channels: Sequence[Channel], *, cut: bool) -> Iterator[Note]:
-    """Yield where the files hold another number of messages than the metadata count."""
-    said = Counter({topic.name: topic.messages for topic in stated.topics})
-    if stated.messages is None and not said:
-        return
-    held: Counter[str] = Counter()
-    for channel in channels:
-        if channel.encoding == CDR or channel.topic in said:
-            held[channel.topic] += channel.messages
-    whole = max(stated.messages or 0, said.total())
-    fewer = [name for name, count in said.items() if held[name] < count]
-    if held.total() < whole or fewer:
-        yield Note(count_words(whole, held.total(), _by_topic(fewer, said, held)), incomplete=True)
-    elif held.total() > whole and not cut:
-        more = [name for name in held if held[name] > said[name]]
-        yield Note(count_words(whole, held.total(), _by_topic(more, said, held)))
+def _counts(stated: Stated, channels: Sequence[Channel]) -> Iterator[Note]:
+    """Yield whether the files hold another number of messages than the metadata count."""
+    held = sum(channel.messages for channel in channels if channel.encoding == CDR or channel.topic in stated.offers)
+    if stated.messages is not None and held != stated.messages:
+        yield Note(count_words(stated.messages, held), incomplete=held < stated.messages)
 
 
-def count_words(said: int, held: int, topics: str = "") -> Words:
+def count_words(said: int, held: int) -> Words:
     """Say that the metadata count another number of messages than there are."""
-    return say(
-        "metadata.yaml counts {said} messages, the files hold {held}{topics}", said=said, held=held, topics=topics
-    )
-
-
-def _by_topic(names: Sequence[str], said: Mapping[str, int], held: Mapping[str, int]) -> str:
-    """Return `: /a 40 → 20, ...`."""
-    return ": " + _some([f"{name} {said[name]} → {held[name]}" for name in sorted(names)]) if names else ""
-
-
-def _some(named: Sequence[str]) -> str:
-    more = len(named) - NAMED
-    return ", ".join(named[:NAMED]) + (f", … (+{more})" if more > 0 else "")
+    return say("metadata.yaml counts {said} messages, the files hold {held}", said=said, held=held)

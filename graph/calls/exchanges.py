@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from graph.data import CallResult
+from graph.data import ANSWER_WITHIN_S, CallResult
 from graph.inner_states import LOG_LEVELS, LevelResult
 from text.i18n import N_
 from text.sentences import reason_of, say
@@ -201,7 +201,7 @@ class LoggerLevels:
         """Ask through `exchanges`, which reports every failure in words."""
         self._exchanges = exchanges
 
-    def ask(self, node: str, level: str | None, timeout_s: float, future: Future[LevelResult]) -> None:
+    def ask(self, node: str, level: str | None, future: Future[LevelResult]) -> None:
         """Read the level of a node's own logger, once it was set to one of `LOG_LEVELS` if one is given."""
         node = full_name(node)
         found: list[str] = []
@@ -212,7 +212,7 @@ class LoggerLevels:
             refused = error or (found[1] if len(found) > 1 else "")
             future.set_result(LevelResult(node, found[0] if found else "", refused))
 
-        self._exchanges.begin(node, exchange, LEVEL_SERVICES, timeout_s, end)
+        self._exchanges.begin(node, exchange, LEVEL_SERVICES, ANSWER_WITHIN_S, end)
 
 
 def logger_of(node: str) -> str:

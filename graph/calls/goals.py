@@ -14,7 +14,7 @@ from graph.messages.fields import to_tree
 from graph.messages.making import draft
 from graph.messages.types import UnknownTypeError
 from text.i18n import N_
-from text.sentences import say
+from text.sentences import SaidError, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -221,13 +221,8 @@ LEAVE_WITHIN_S = 1.5
 LOOK_S = 0.01
 
 
-class GoalError(Exception):
+class GoalError(SaidError):
     """The goal cannot be sent; str() says why, `words` says it in translatable form."""
-
-    def __init__(self, words: str) -> None:
-        """Store the reason, made by `text.sentences.say`."""
-        super().__init__(words)
-        self.words = words
 
 
 class Goals:

@@ -17,6 +17,7 @@ from graph.calls.goals import LOST, NO_WORD_OF_CANCEL, REFUSED, STATUS
 from graph.data import ANSWER_WITHIN_S, GoalStatus, SeenGoal
 from graph.messages.fields import to_tree
 from graph.messages.types import UnknownTypeError, load_action
+from graph.ros import subscribe, taken, unsubscribe
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -105,21 +106,21 @@ class SeenAction:
         self._since_s = time.time()
         self._before: frozenset[bytes] = frozenset()
         self._goals: dict[bytes, _Seen] = {}
-        self._status = _subscribe(node, GoalStatusArray, status_topic(action), qos_profile_action_status_default)
+        self._status = subscribe(node, GoalStatusArray, status_topic(action), qos_profile_action_status_default)
         self._feedback: Subscription | None = None
         try:
             kind: Any = load_action(type_name)
         except UnknownTypeError:
             # The type of its feedback is unknown here; its status has the same type everywhere.
             return
-        self._feedback = _subscribe(
+        self._feedback = subscribe(
             node, kind.Impl.FeedbackMessage, f"{action}/_action/feedback", QoSProfile(depth=FEEDBACKS)
         )
 
     def take(self) -> None:
-        for message in _taken(self._status):
+        for message, _info in taken(self._status, 2 * FEEDBACKS):
             self._hear_status(message.status_list)
-        for message in _taken(self._feedback) if self._feedback else ():
+        for message, _info in taken(self._feedback, 2 * FEEDBACKS) if self._feedback else ():
             seen = self._goals.get(bytes(message.goal_id.uuid))
             if seen is not None:
                 count = seen.told.feedback_count + 1
@@ -143,7 +144,7 @@ class SeenAction:
 
     def close(self) -> None:
         for subscription in filter(None, (self._status, self._feedback)):
-            self._node.destroy_subscription(subscription)
+            unsubscribe(self._node, subscription)
 
     def _hear_status(self, listed: Iterable[Any]) -> None:
         """Process a status list; goals that the server no longer lists are forgotten here, too."""
@@ -241,21 +242,3 @@ class SeenGoals:
             cancelling.close()
         self._actions.clear()
         self._cancelling.clear()
-
-
-def _subscribe(node: Node, kind: Any, topic: str, qos: Any) -> Subscription:  # noqa: ANN401
-    return node.create_subscription(kind, topic, _never_called, qos)
-
-
-def _taken(subscription: Subscription) -> Iterable[Any]:
-    """Yield what is in the queue; bounded, or a fast publisher could keep this busy for ever."""
-    with subscription.handle:
-        for _ in range(2 * FEEDBACKS):
-            taken = subscription.handle.take_message(subscription.msg_type, False)
-            if taken is None:
-                return
-            yield taken[0]
-
-
-def _never_called(message: Any) -> None:  # noqa: ANN401
-    """Stand in for the callback that rclpy insists on; no executor ever spins the node."""

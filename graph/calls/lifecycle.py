@@ -15,6 +15,7 @@ from graph.calls.exchanges import NodeRequest, ServiceSet, full_name
 from graph.data import ANSWER_WITHIN_S
 from graph.inner_states import ComponentRow, ContainerRow, LifecycleRow, TransitionResult
 from graph.messages.types import load_message
+from graph.ros import subscribe, taken, unsubscribe
 from text.i18n import N_
 from text.sentences import say
 
@@ -163,7 +164,7 @@ class Lifecycles:
         """Follow exactly the nodes that have a lifecycle in this graph."""
         there = managed(services)
         for name in self._followed.keys() - there:
-            self._node.destroy_subscription(self._followed.pop(name).subscription)
+            unsubscribe(self._node, self._followed.pop(name).subscription)
         processes = {row.name: row.processes for row in nodes}
         for name in there:
             now = processes.get(name, ())
@@ -183,7 +184,7 @@ class Lifecycles:
             if due and not followed.asking:
                 self._ask(name, followed)
 
-    def change(self, node: str, transition: str, timeout_s: float, future: Future[TransitionResult]) -> None:
+    def change(self, node: str, transition: str, future: Future[TransitionResult]) -> None:
         """Have a node make a transition; the result says in words why it was not made."""
         node = full_name(node)
         facts = ChangeFacts()
@@ -199,25 +200,18 @@ class Lifecycles:
             why = error or why_not(node, transition, facts, erred=erred)
             future.set_result(TransitionResult(node, transition, facts.after.state, why))
 
-        self._exchanges.begin(node, change(transition, facts), SERVICES, timeout_s, end)
+        self._exchanges.begin(node, change(transition, facts), SERVICES, ANSWER_WITHIN_S, end)
 
     def close(self) -> None:
         while self._followed:
-            self._node.destroy_subscription(self._followed.popitem()[1].subscription)
+            unsubscribe(self._node, self._followed.popitem()[1].subscription)
 
     def _listen(self, name: str) -> Subscription:
-        return self._node.create_subscription(
-            load_message(EVENT_TYPE), f"{name}/{EVENT}", lambda _event: None, EVENTS
-        )
+        return subscribe(self._node, load_message(EVENT_TYPE), f"{name}/{EVENT}", EVENTS)
 
     def _take_events(self, followed: _Followed) -> None:
-        subscription: Any = followed.subscription
-        while True:
-            with subscription.handle:
-                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-            if taken is None:
-                return
-            state = str(taken[0].goal_state.label)
+        for event, _info in taken(followed.subscription, EVENTS):
+            state = str(event.goal_state.label)
             followed.row = replace(followed.row, state=state, transitions=(), error="")
             followed.again = True
             if state == ERROR_PROCESSING:

@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 from graph.calls.exchanges import NodeRequest, ServiceSet, full_name
 from graph.data import ParameterRow, ParametersResult, SetResult
+from graph.messages.fields import FieldType
+from graph.messages.making import FieldError, one_made, shown
+from graph.messages.yaml_text import value_of
 from text.i18n import N_
 from text.sentences import say
-from text.suggestions import no_number
+from text.yaml_faults import YamlError
 from text.yaml_scalars import meaning
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Mapping, Sequence
+    from collections.abc import Generator, Mapping, Sequence
     from concurrent.futures import Future
 
     from graph.calls.exchanges import Exchange, Exchanges
@@ -68,19 +71,16 @@ def _made(descriptor: Mapping[str, Any] | None, value: Value) -> tuple[str, dict
         return say("the node has no such parameter"), None
     if descriptor["read_only"]:
         return say("it is read-only: it can be set only when the node starts"), None
-    type_name = type_of(descriptor)
     try:
-        return "", carried(type_name, value)
-    except WrongValueError as error:
-        # A dynamically typed parameter keeps its type if the value fits.
-        return _made_anew(value) if descriptor["dynamic_typing"] else (error.words, None)
-
-
-def _made_anew(value: Value) -> tuple[str, dict[str, Value] | None]:
+        return "", carried(type_of(descriptor), value)
+    except FieldError as error:
+        if not descriptor["dynamic_typing"]:
+            return error.message, None
+    # A dynamically typed parameter keeps its type if the value fits.
     try:
-        return "", carried("not_set", value)
-    except WrongValueError as error:
-        return error.words, None
+        return "", carried(TYPES[0], value)
+    except FieldError as error:
+        return error.message, None
 
 
 def _describe(names: list[str]) -> Generator[NodeRequest, Mapping[str, Any], dict[str, Any]]:
@@ -140,30 +140,17 @@ class ParameterCalls:
 
 
 TYPES = (
-    "not_set",
-    "bool",
-    "integer",
-    "double",
-    "string",
-    "byte_array",
-    "bool_array",
-    "integer_array",
-    "double_array",
-    "string_array",
+    *("not_set", "bool", "integer", "double", "string", "byte_array", "bool_array", "integer_array"),
+    *("double_array", "string_array"),
 )
 """By their numbers (source: rcl_interfaces/msg/ParameterType)."""
-INTEGERS = range(-(2**63), 2**63)
-SHOWN = 40
-"""Characters of a wrong value that an error repeats."""
-
-
-class WrongValueError(ValueError):
-    """A value does not fit its parameter; `words` and str() say what was expected and given."""
-
-    def __init__(self, words: str) -> None:
-        """Store the reason, made by `text.sentences.say`."""
-        super().__init__(words)
-        self.words = words
+_FIELDS = {
+    "bool": FieldType("boolean"),
+    "integer": FieldType("int64"),
+    "double": FieldType("double"),
+    "string": FieldType("string"),
+    "byte": FieldType("octet"),
+}
 
 
 def row(name: str, descriptor: Mapping[str, Any], carried: Mapping[str, Any] | None) -> ParameterRow:
@@ -211,12 +198,26 @@ def carried(type_name: str, value: Value) -> dict[str, Value]:
     """Return the tree of the ParameterValue of this type for a value that a person gave.
 
     An integer is accepted for a double, and the text of a value for the value. For `not_set` the
-    type is that of the value. Raises WrongValueError if it does not fit.
+    type is that of the value. Raises FieldError if it does not fit.
     """
-    if type_name == TYPES[0]:
-        type_name = _type_for(value)
-    made = _READERS[type_name](value)
+    type_name = _type_for(value) if type_name == TYPES[0] else type_name
+    single, _, many = type_name.partition("_")
+    made: Value = bytes(value) if isinstance(value, (bytes, bytearray)) else []
+    if not many:
+        made = _one(single, value)
+    elif not isinstance(value, (bytes, bytearray)):
+        elements: Any = [_one(single, each) for each in _elements(value)]
+        made = bytes(elements) if single == "byte" else elements
     return {"type": TYPES.index(type_name), f"{type_name}_value": made}
+
+
+def _one(type_name: str, value: Value) -> Any:  # noqa: ANN401 - of the type of the parameter
+    """Return a single value; text that was typed means what it would mean in YAML."""
+    if isinstance(value, str) and type_name != "string":
+        meant = meaning(value.strip())
+        if isinstance(meant, (int, float)) and isinstance(meant, bool) == (type_name == "bool"):
+            value = meant
+    return one_made(_FIELDS[type_name], value, "")
 
 
 def _type_for(value: Value) -> str:
@@ -227,114 +228,25 @@ def _type_for(value: Value) -> str:
             return name
     elements = _elements(value)
     if not elements:
-        raise WrongValueError(say("an empty list has no type, and the parameter has none either"))
+        raise FieldError("", say("an empty list has no type, and the parameter has none either"))
     names = {_type_for(each) for each in elements}
     if names == {"integer", "double"}:
         return "double_array"
     if len(names) > 1 or f"{min(names)}_array" not in TYPES:
-        raise WrongValueError(say("expected a list of values of one type, got {value}", value=_shown(value)))
+        raise FieldError("", say("expected a list of values of one type, got {value}", value=shown(value)))
     return f"{names.pop()}_array"
-
-
-def _bool(value: Value) -> bool:
-    meant = _meant(value)
-    if not isinstance(meant, bool):
-        raise WrongValueError(say("expected true or false, got {value}", value=_shown(value)))
-    return meant
-
-
-def _integer(value: Value) -> int:
-    number = _meant(value)
-    if isinstance(number, float) and number.is_integer():
-        number = int(number)
-    if isinstance(number, bool) or not isinstance(number, int):
-        raise WrongValueError(say("expected a whole number, got {value}", value=_shown(value)))
-    if number not in INTEGERS:
-        raise WrongValueError(say("{value} is too large for a 64-bit integer", value=_shown(value)))
-    return number
-
-
-def _double(value: Value) -> float:
-    meant = _meant(value)
-    if isinstance(meant, bool) or not isinstance(meant, (int, float)):
-        raise WrongValueError(no_number(value, _shown(value)))
-    try:
-        return float(meant)
-    except OverflowError:
-        raise WrongValueError(say("{value} is too large for a double", value=_shown(value))) from None
-
-
-def _meant(value: Value) -> Value | None:
-    """Return a single value; text that was typed means what it would mean in YAML."""
-    return meaning(value.strip()) if isinstance(value, str) else value
-
-
-def _string(value: Value) -> str:
-    if isinstance(value, (bool, int, float)):
-        words = say("expected a string, got {value}: put it in quotes", value=_shown(value))
-        raise WrongValueError(words)
-    if not isinstance(value, str):
-        raise WrongValueError(say("expected a string, got {value}", value=_shown(value)))
-    if "\0" in value:
-        raise WrongValueError(say("a ROS string cannot hold the character NUL"))
-    try:
-        value.encode()
-    except UnicodeEncodeError:
-        raise WrongValueError(say("{value} is not valid Unicode", value=_shown(value))) from None
-    return value
-
-
-def _bytes(value: Value) -> bytes:
-    if isinstance(value, (bytes, bytearray)):
-        return bytes(value)
-    numbers = [_integer(each) for each in _elements(value)]
-    if not all(0 <= number <= 255 for number in numbers):
-        raise WrongValueError(say("expected bytes, 0 to 255, got {value}", value=_shown(value)))
-    return bytes(numbers)
-
-
-def _list_of(one: Callable[[Value], Value]) -> Callable[[Value], Value]:
-    return lambda value: [one(each) for each in _elements(value)]
 
 
 def _elements(value: Value) -> list[Value]:
     if isinstance(value, str):
-        value = _parsed(value)
+        text = value
+        try:
+            value = value_of(text)
+        except YamlError as error:
+            if text.lstrip().startswith("["):
+                raise FieldError("", error.message) from None
     if hasattr(value, "tolist"):
         value = value.tolist()
     if not isinstance(value, (list, tuple)):
-        raise WrongValueError(say("expected a list, such as [1, 2], got {value}", value=_shown(value)))
+        raise FieldError("", say("expected a list, such as [1, 2], got {value}", value=shown(value)))
     return list(value)
-
-
-def _parsed(text: str) -> Value:
-    from graph.messages.yaml_text import value_of
-    from text.yaml_faults import YamlError
-
-    try:
-        value: Value = value_of(text)
-    except YamlError as error:
-        if text.lstrip().startswith("["):
-            raise WrongValueError(error.message) from None
-        return text
-    return value
-
-
-def _shown(value: object) -> str:
-    if value is None:
-        return say("nothing")
-    text = repr(value)
-    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
-
-
-_READERS: dict[str, Callable[[Value], Value]] = {
-    "bool": _bool,
-    "integer": _integer,
-    "double": _double,
-    "string": _string,
-    "byte_array": _bytes,
-    "bool_array": _list_of(_bool),
-    "integer_array": _list_of(_integer),
-    "double_array": _list_of(_double),
-    "string_array": _list_of(_string),
-}

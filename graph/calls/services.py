@@ -123,7 +123,7 @@ class Calls:
             client = self.prepare(service, type_name)
             made = draft(load_service(type_name).Request, request)
         except UnknownTypeError as error:
-            future.set_result(_failed(service, error.reason, started_s))
+            future.set_result(_failed(service, error.words, started_s))
             return
         except FieldError as error:
             words = say("{field}: {message}", field=error.field, message=error.message)

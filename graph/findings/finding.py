@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
-PlaceKind = Literal["topic", "service", "action", "node"]
+PlaceKind = Literal["topic", "service", "action", "node", "frame"]
 SETTLED_S = 4.0
 """A graph in which nodes start or end looks wrong for a moment: who is still to come is missing."""
 FORGOTTEN_S = 25.0
@@ -45,7 +45,7 @@ class FindingPlace(NamedTuple):
 
 @dataclass(frozen=True)
 class GraphFinding:
-    """One thing that is wrong with the graph."""
+    """One thing that is wrong with the graph, or with its frames."""
 
     level: FindingLevel
     rule: str
@@ -56,7 +56,7 @@ class GraphFinding:
     mend: str
     """What to do about it, a sentence."""
     nodes: tuple[str, ...] = ()
-    """Full names of the nodes that take part in it."""
+    """Full names of the nodes that take part in it; the frames that it is about."""
     settled_s: float = SETTLED_S
     """It is only told once it has held for so long."""
 

@@ -24,8 +24,7 @@ from graph.findings.finding import (
     meant,
 )
 from graph.housekeeping import is_hidden, is_housekeeping
-from graph.qos import BEST_EFFORT, TRANSIENT_LOCAL
-from graph.qos_compatibility import mismatches
+from graph.qos import BEST_EFFORT, TRANSIENT_LOCAL, mismatches
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -388,14 +387,11 @@ def _other_clock(off_s: float) -> tuple[str, str]:
         "Stamp messages with the clock of the node (`get_clock().now()`), and set the clock of the "
         "computer or board that they come from."
     )
-    days, minutes = abs(off_s) / DAY_S, abs(off_s) / 60.0
+    days = abs(off_s) / DAY_S
+    time = say("{n:.0f} min", n=abs(off_s) / 60.0) if days < 1.0 else say("{n:.0f} days", n=days)
     if off_s > 0:
-        if days < 1.0:
-            return say("Its stamps are {minutes:.0f} min behind this computer.", minutes=minutes), mend
-        return say("Its stamps are {days:.0f} days behind this computer.", days=days), mend
-    if days < 1.0:
-        return say("Its stamps are {minutes:.0f} min ahead of this computer.", minutes=minutes), mend
-    return say("Its stamps are {days:.0f} days ahead of this computer.", days=days), mend
+        return say("Its stamps are {time} behind this computer.", time=time), mend
+    return say("Its stamps are {time} ahead of this computer.", time=time), mend
 
 
 def _ahead(seconds: float) -> tuple[str, str]:
@@ -457,8 +453,6 @@ def _simulated(update: GraphUpdate, row: TopicRow) -> Iterator[GraphFinding]:
 
 STREAMS = "sensor_msgs/msg/"
 """Types whose messages come all the time, if they come at all."""
-RECORDED = "recorded"
-"""The fact of a topic in a recording, which has no node to look at."""
 
 
 def _silences(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
@@ -467,7 +461,7 @@ def _silences(update: GraphUpdate, norms: GraphNorms) -> Iterator[GraphFinding]:
     Whatever is published now and then, such as commands, may rest.
     """
     for row in update.topics:
-        if row.trouble is not Trouble.QUIET or RECORDED in row.facts or is_housekeeping(row.name):
+        if row.trouble is not Trouble.QUIET or row.recorded or is_housekeeping(row.name):
             continue
         if any(norms.moves(row.name, kind) for kind in row.type_names):
             continue

@@ -7,17 +7,15 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from graph.data import FrameRow
-from graph.frames.reading import Names, TransformReader
-from graph.frames.senders import TOGETHER_S, Publishers, Senders
+from graph.frames.senders import TOGETHER_S, Fields, Publishers, Senders
+from graph.messages.definitions import TypeText, bag_decoder
 from space.buffer import Stamped
 from space.transform import IDENTITY, Transform
 from text.ros_names import TF, TF_STATIC
 from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from graph.data import Value
+    from collections.abc import Mapping
 
 WINDOW_S = 5.0
 """Of the rate, and how long a transform that was not taken is spoken of."""
@@ -34,6 +32,7 @@ TOLERANCE = 0.01
 """How far the squared length of a quaternion may be from 1. Source: tf2, buffer_core.cpp."""
 INFINITE = math.inf
 NANOSECONDS = 1e-9
+TF_MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
 class _Counted(NamedTuple):
@@ -47,25 +46,6 @@ class _Counted(NamedTuple):
 class FrameRecord:
     """One frame in one parent on one of the two topics."""
 
-    __slots__ = (
-        "_bad",
-        "_bad_s",
-        "_changes",
-        "_faults",
-        "_good",
-        "_number",
-        "_points",
-        "_rivals",
-        "_senders",
-        "_turns",
-        "_wrong_name",
-        "arrived_s",
-        "count",
-        "names",
-        "slashed",
-        "static",
-    )
-
     def __init__(self, parent: str, child: str, arrived_s: float, *, static: bool) -> None:
         """Begin to count; the names are without a leading slash."""
         self.names = (_kept(parent), _kept(child))
@@ -76,9 +56,9 @@ class FrameRecord:
         self.arrived_s = arrived_s
         """When the newest came, unix time."""
         self._wrong_name = _wrong_name(parent, child)
-        self._good: tuple[Any, ...] = ()
-        """Fields of the newest that was taken, as `graph.frames.reading.Transforms` has them."""
-        self._bad: tuple[Any, ...] = ()
+        self._good: Fields = ()
+        """Of the newest that was taken."""
+        self._bad: Fields = ()
         self._bad_s = -INFINITE
         self._faults = 0
         self._changes: deque[float] = deque(maxlen=CHANGES)
@@ -88,9 +68,9 @@ class FrameRecord:
         self._turns = 0
         """How often another publisher than before has sent one that moves, as far as is known."""
         self._points: deque[_Counted] = deque()
-        self._senders = Senders(arrived_s)
+        self._senders = Senders()
 
-    def take(self, fields: tuple[Any, ...], arrived_s: float, number: int, sender: bytes | None) -> None:
+    def take(self, fields: Fields, arrived_s: float, number: int, sender: bytes | None) -> None:
         """Take the next transform; `number` counts the messages of its publisher, `sender`."""
         self.count += 1
         if self.count == 1:
@@ -105,7 +85,7 @@ class FrameRecord:
         if turned and not self.static:
             self._turns += 1
         self._number, self.arrived_s = number, arrived_s
-        _, _, _, _, x, y, z, a, b, c, d = fields
+        _, x, y, z, a, b, c, d = fields
         # Written so that any comparison with NaN fails.
         if (
             -TOLERANCE < a * a + b * b + c * c + d * d - 1.0 < TOLERANCE
@@ -114,7 +94,7 @@ class FrameRecord:
             and -INFINITE < z < INFINITE
             and not self._wrong_name
         ):
-            if self.static and self._good and self._good[4:] != fields[4:]:
+            if self.static and self._good and self._good[1:] != fields[1:]:
                 self._changes.append(arrived_s)
                 # A node that is started anew takes longer.
                 self._rivals = self._rivals or (turned and passed_s < TOGETHER_S)
@@ -128,9 +108,8 @@ class FrameRecord:
         self._mark()
         who = self._senders.who(topic, self.arrived_s, now_s, latched=self.static)
         good = self._good
-        stamp = good or self._bad
-        stamp_s = stamp[0] + stamp[1] * NANOSECONDS
-        transform = Transform.of(good[4:7], good[7:11]) if good else IDENTITY
+        stamp_s = (good or self._bad)[0]
+        transform = Transform.of(good[1:4], good[4:]) if good else IDENTITY
         parent, child = self.names
         return FrameRow(
             Stamped(parent, child, stamp_s, transform, self.static),
@@ -189,9 +168,9 @@ def _wrong_name(parent: str, child: str) -> str:
     return say("its name has {count} characters", count=longest) if longest > LONGEST_NAME else ""
 
 
-def _wrong_numbers(fields: tuple[Any, ...]) -> str:
+def _wrong_numbers(fields: Fields) -> str:
     """Say why the numbers are no transform."""
-    moved, turned = fields[4:7], fields[7:11]
+    moved, turned = fields[1:4], fields[4:]
     if not all(map(math.isfinite, moved)):
         return say("its translation is not finite: {numbers}", numbers=_listed(moved))
     if not all(map(math.isfinite, turned)):
@@ -212,20 +191,13 @@ MOST_FRAMES = 2000
 FORGOTTEN_S = 10.0
 """A moving frame that has been silent for so long, as long as tf2 remembers, makes room."""
 ROOM_AGAIN_S = 1.0
-MOST_LISTED = 20_000
-"""Records in all lists, so that messages with other names each time do not fill the memory."""
 
 
 class FrameBook:
     """Takes the messages of both topics, and gives a row for every frame in each of its parents."""
 
-    def __init__(self, decode: Callable[[bytes], Mapping[str, Value]]) -> None:
-        """`decode` makes a tree of a message that is not in little-endian CDR."""
-        self._readers = {topic: TransformReader(decode) for topic in FRAME_TOPICS}
+    def __init__(self) -> None:
         self._records: dict[tuple[str, str, bool], FrameRecord] = {}
-        self._lists: dict[tuple[bool, Names], list[FrameRecord | None]] = {}
-        """The records of a message with these names; None for those that find no room."""
-        self._listed = 0
         self._publishers = {topic: Publishers() for topic in FRAME_TOPICS}
         self._messages = 0
         self._is_full = False
@@ -234,7 +206,6 @@ class FrameBook:
 
     def clear(self) -> None:
         self._records.clear()
-        self._lists.clear()
 
     def take(
         self, topic: str, raw: bytes, arrived_s: float, number: int | None = None, sender: bytes | None = None
@@ -242,65 +213,55 @@ class FrameBook:
         """Take a message, with its `number` at its publisher, if the middleware counts.
 
         `sender` is the gid of that publisher, if the middleware tells.
-        Raises what `TransformReader.read` raises.
+        Raises whatever bytes that are no such message make of it.
         """
-        names, found = self._readers[topic].read(raw)
-        key = (topic == TF_STATIC, names)
-        records = self._lists.get(key)
-        if records is None:
-            records = self._open(names, arrived_s, static=key[0])
+        # rclpy would take five times as long.
+        transforms: Any = bag_decoder(TypeText(TF_MESSAGE))(raw)["transforms"]
         if number is None:
             number = self._messages = self._messages + 1
-        for record, fields in zip(records, found, strict=True):
+        for one in transforms:
+            parent, child = one["header"]["frame_id"], one["child_frame_id"]
+            record = self._record(parent, child, arrived_s, static=topic == TF_STATIC)
             if record is not None:
-                record.take(fields, arrived_s, number, sender)
+                record.take(_fields(one), arrived_s, number, sender)
 
-    def published_by(self, topic: str, there: Mapping[bytes, str], now_s: float) -> None:
+    def published_by(self, topic: str, there: Mapping[bytes, str]) -> None:
         """Say who publishes one of the topics now: the gid of each publisher to its node.
 
         The name is empty while it is unknown.
         """
-        self._publishers[topic].are(there, now_s)
+        self._publishers[topic].are(there)
 
     def rows(self, now_s: float) -> tuple[FrameRow, ...]:
         """Return the rows at this unix time, sorted by frame and parent."""
         if self._is_full and abs(now_s - self._made_room_s) > ROOM_AGAIN_S:
             self._make_room(now_s)
         moving, static = self._publishers[TF], self._publishers[TF_STATIC]
-        return tuple(record.row(now_s, static if record.static else moving) for record in self._records.values())
-
-    def _open(self, names: Names, arrived_s: float, *, static: bool) -> list[FrameRecord | None]:
-        known = len(self._records)
-        records = [self._record(parent, child, arrived_s, static=static) for parent, child in names]
-        if len(self._records) != known:
-            in_order = sorted(self._records.items(), key=lambda each: (each[0][1], each[0]))
-            self._records = dict(in_order)
-        self._listed += len(records) + 1
-        if self._listed > MOST_LISTED:
-            self._lists.clear()
-            self._listed = len(records) + 1
-        self._lists[static, names] = records
-        return records
+        records = sorted(self._records.values(), key=lambda record: (record.names[::-1], record.static))
+        return tuple(record.row(now_s, static if record.static else moving) for record in records)
 
     def _record(self, parent: str, child: str, arrived_s: float, *, static: bool) -> FrameRecord | None:
         bare = parent.removeprefix("/"), child.removeprefix("/")
-        made = FrameRecord(*bare, arrived_s, static=static)
-        key = (*made.names, static)
+        key = (_kept(bare[0]), _kept(bare[1]), static)
         record = self._records.get(key)
         if record is None:
             if len(self._records) >= MOST_FRAMES:
                 self._is_full = True
                 return None
-            record = self._records[key] = made
+            record = self._records[key] = FrameRecord(*bare, arrived_s, static=static)
         record.slashed = record.slashed or bare != (parent, child)
         return record
 
     def _make_room(self, now_s: float) -> None:
-        """Forget moving frames that are long silent, and let all others try again."""
+        """Forget moving frames that are long silent."""
         self._made_room_s, self._is_full = now_s, False
-        self._lists.clear()
         self._records = {
             key: record
             for key, record in self._records.items()
             if record.static or now_s - record.arrived_s <= FORGOTTEN_S
         }
+
+
+def _fields(one: Mapping[str, Any]) -> Fields:
+    stamp, moved, turned = one["header"]["stamp"], one["transform"]["translation"], one["transform"]["rotation"]
+    return (stamp["sec"] + stamp["nanosec"] * NANOSECONDS, *moved.values(), *turned.values())

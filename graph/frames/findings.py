@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import Enum
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from graph.frames.book import FRAME_TOPICS, MOST_FRAMES
-from graph.frames.reading import TF_MESSAGE
+from graph.findings.finding import FindingLevel, FindingPlace, GraphFinding
+from graph.frames.book import FRAME_TOPICS, MOST_FRAMES, TF_MESSAGE
 from graph.qos import VOLATILE
 from text.ros_names import TF, TF_STATIC
 from text.sentences import say
 from text.suggestions import near
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Iterator
+    from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 
     from graph.data import FrameRow, GraphUpdate
     from graph.frames.tree import FrameTree
@@ -26,37 +23,18 @@ NAMED = 3
 """Frames and nodes that a sentence names; the others are counted."""
 
 
-class FrameTrouble(str, Enum):
-    """What is wrong, from what stops tf2 to what will puzzle somebody later."""
-
-    FULL = "full"
-    LOOP = "loop"
-    PARENTS = "two parents"
-    CONTESTED = "contested"
-    NUMBERS = "numbers"
-    STALE = "stale"
-    GONE = "gone"
-    ROOTS = "two roots"
-    UNKNOWN = "unknown frame"
-    CLOCK = "clock"
-    BOTH = "both topics"
-    STATIC_MOVED = "static moved"
-    VOLATILE = "volatile"
-    ELSEWHERE = "elsewhere"
-    SLASH = "slash"
+ORDER = (
+    *("full", "loop", "two parents", "contested", "numbers", "stale", "gone", "two roots", "unknown frame"),
+    *("clock", "both topics", "static moved", "volatile", "elsewhere", "slash"),
+)
+"""The rules, from what stops tf2 to what will puzzle somebody later."""
 
 
-@dataclass(frozen=True)
-class FrameFinding:
-    """One thing that is wrong."""
-
-    trouble: FrameTrouble
-    frames: tuple[str, ...]
-    """Where: the frames that it is about."""
-    text: str
-    """A sentence."""
-    advice: str
-    """What to do, a sentence."""
+def _found(rule: str, frames: tuple[str, ...], what: str, mend: str) -> GraphFinding:
+    """Return what is wrong with these frames, and what to do, both sentences."""
+    return GraphFinding(
+        FindingLevel.ERROR, rule, FindingPlace("frame", frames[0] if frames else ""), what, mend, frames
+    )
 
 
 def listed(names: Sequence[str]) -> str:
@@ -102,79 +80,62 @@ def is_stale(heard: FrameRow) -> bool:
     return heard.age_s > max(STALE_S, STALE_PERIODS / max(heard.hz, 1e-3))
 
 
-@dataclass(frozen=True)
-class Surroundings:
-    """What is known besides the frames themselves."""
-
-    named: Mapping[str, str] = field(default_factory=dict)
-    """Topic to the frame that the header of its newest message names."""
-    elsewhere: Mapping[str, int] = field(default_factory=dict)
-    """Other topics on which somebody publishes frames, to how many listen there."""
-    volatile: tuple[str, ...] = ()
-    """Nodes that publish /tf_static and do not latch it."""
-    settling: bool = False
-    """Whether static frames are still to come: what is missing now may be there in a moment."""
-    simulated: bool = False
-    """Whether somebody publishes /clock, so that stamps are not times of day."""
-    most: int = 0
-    """How many frames are kept at most; 0 without a limit."""
+CLOCK = "/clock"
 
 
-def frame_findings(tree: FrameTree, heard: Sequence[FrameRow], around: Surroundings) -> list[FrameFinding]:
-    """Return what is wrong, the worst first."""
+def findings_in(update: GraphUpdate, tree: FrameTree) -> list[GraphFinding]:
+    """Return what is wrong with the frames of an update, which this tree was made of, the worst first."""
+    named = {row.name: row.frame_id for row in update.topics if row.frame_id}
+    # In simulated time stamps are no times of day.
+    simulated = any(row.name == CLOCK and row.publishers for row in update.topics)
     found = [
-        *findings_of_tree(tree, around.named, settling=around.settling),
-        *findings_of_frames(heard, simulated=around.simulated),
-        *_full(heard, around),
-        *_volatile(around),
-        *_elsewhere(around),
+        *findings_of_tree(tree, named, settling=is_settling(update)),
+        *findings_of_frames(update.frames, simulated=simulated),
+        *_full(update),
+        *_volatile(update),
+        *_elsewhere(update),
     ]
-    order = list(FrameTrouble)
-    return sorted(found, key=lambda one: order.index(one.trouble))
+    return sorted(found, key=lambda one: ORDER.index(one.rule))
 
 
-def _full(heard: Sequence[FrameRow], around: Surroundings) -> Iterator[FrameFinding]:
-    if around.most and len(heard) >= around.most:
-        text = say("there are more than {most} frames; the others are not shown", most=around.most)
+def _full(update: GraphUpdate) -> Iterator[GraphFinding]:
+    if len(update.frames) >= MOST_FRAMES:
+        text = say("there are more than {most} frames; the others are not shown", most=MOST_FRAMES)
         advice = say("look for a node that makes a new name each time, such as one with a number or a time in it")
-        yield FrameFinding(FrameTrouble.FULL, (), text, advice)
+        yield _found("full", (), text, advice)
 
 
-def _volatile(around: Surroundings) -> Iterator[FrameFinding]:
-    if around.volatile:
+def _volatile(update: GraphUpdate) -> Iterator[GraphFinding]:
+    ends = [end for row in update.topics if row.name == TF_STATIC for end in row.published_by]
+    volatile = tuple(dict.fromkeys(end.called for end in ends if end.durability == VOLATILE))
+    if volatile:
         text = say(
             "{nodes}: publishes {topic} without transient_local, so that tf2 does not hear it",
-            nodes=listed(around.volatile),
+            nodes=listed(volatile),
             topic=TF_STATIC,
         )
         advice = say(
             "create its publisher with durability transient_local and depth 1, as "
             "tf2_ros.StaticTransformBroadcaster does"
         )
-        yield FrameFinding(FrameTrouble.VOLATILE, (), text, advice)
+        yield _found("volatile", (), text, advice)
 
 
-def _elsewhere(around: Surroundings) -> Iterator[FrameFinding]:
-    for topic, listeners in sorted(around.elsewhere.items()):
+def _elsewhere(update: GraphUpdate) -> Iterator[GraphFinding]:
+    for row in update.topics:
+        if TF_MESSAGE not in row.type_names or row.name in FRAME_TOPICS or not row.publishers:
+            continue
         text = (
-            say("frames come on {topic} too, where tf2 does not listen by itself", topic=topic)
-            if listeners
-            else say("frames come on {topic} too, which nobody here listens to", topic=topic)
+            say("frames come on {topic} too, where tf2 does not listen by itself", topic=row.name)
+            if row.subscribers
+            else say("frames come on {topic} too, which nobody here listens to", topic=row.name)
         )
         advice = say(
             "start its publisher with -r {topic}:={usual}, or whoever needs these frames with -r {usual}:={topic}",
-            topic=topic,
-            usual=TF_STATIC if topic.endswith(TF_STATIC) else TF,
+            topic=row.name,
+            usual=TF_STATIC if row.name.endswith(TF_STATIC) else TF,
         )
-        yield FrameFinding(FrameTrouble.ELSEWHERE, (), text, advice)
-
-
-CLOCK = "/clock"
-
-
-def findings_in(update: GraphUpdate, tree: FrameTree) -> list[FrameFinding]:
-    """Return what is wrong with the frames of an update, which this tree was made of."""
-    return frame_findings(tree, update.frames, surroundings(update))
+        yield _found("elsewhere", (), text, advice)
 
 
 def is_settling(update: GraphUpdate) -> bool:
@@ -184,29 +145,6 @@ def is_settling(update: GraphUpdate) -> bool:
     """
     return not any(row.is_static for row in update.frames) and any(
         row.name == TF_STATIC and row.publishers and (row.count or row.trouble is None) for row in update.topics
-    )
-
-
-def surroundings(update: GraphUpdate) -> Surroundings:
-    """Return what the topics tell: frames that headers name, frames on other topics."""
-    volatile = [
-        end.called
-        for row in update.topics
-        if row.name == TF_STATIC
-        for end in row.published_by
-        if end.durability == VOLATILE
-    ]
-    return Surroundings(
-        named={row.name: row.frame_id for row in update.topics if row.frame_id},
-        elsewhere={
-            row.name: row.subscribers
-            for row in update.topics
-            if TF_MESSAGE in row.type_names and row.name not in FRAME_TOPICS and row.publishers
-        },
-        volatile=tuple(dict.fromkeys(volatile)),
-        simulated=any(row.name == CLOCK and row.publishers for row in update.topics),
-        settling=is_settling(update),
-        most=MOST_FRAMES,
     )
 
 
@@ -220,7 +158,7 @@ OTHER_START_S = 1e9
 """Stamps below are no unix time: simulated time, time since the start, or none at all."""
 
 
-def findings_of_frames(heard: Sequence[FrameRow], *, simulated: bool = False) -> Iterator[FrameFinding]:
+def findings_of_frames(heard: Sequence[FrameRow], *, simulated: bool = False) -> Iterator[GraphFinding]:
     """Yield what is wrong with each; what one node does to many frames is said once.
 
     With `simulated` time, stamps cannot be compared with the clock on the wall.
@@ -235,7 +173,7 @@ def findings_of_frames(heard: Sequence[FrameRow], *, simulated: bool = False) ->
     yield from _slashed(heard)
 
 
-def _numbers(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _numbers(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     for found in _together(heard, lambda one: one.fault and (one.publishers, one.certain, one.fault)):
         first = found[0]
         text = say(
@@ -246,10 +184,10 @@ def _numbers(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
             count=sum(one.count for one in found),
         )
         advice = say("tf2 drops such a transform as well: fix what {node} fills in", node=by_whom([first]))
-        yield FrameFinding(FrameTrouble.NUMBERS, _names(found), text, advice)
+        yield _found("numbers", _names(found), text, advice)
 
 
-def _contested(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _contested(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     for found in _together(heard, lambda one: one.contested and (one.publishers, one.certain)):
         names, nodes = listed(_names(found)), listed(found[0].publishers)
         text = (
@@ -258,10 +196,10 @@ def _contested(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
             else say("several publishers send {frames} by turns, so that it jumps", frames=names)
         )
         advice = say("leave it to one of {nodes}; many nodes have a parameter like publish_tf: false", nodes=nodes)
-        yield FrameFinding(FrameTrouble.CONTESTED, _names(found), text, advice)
+        yield _found("contested", _names(found), text, advice)
 
 
-def _stale(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _stale(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     for found in _together(heard, lambda one: is_stale(one) and (one.publishers, one.gone)):
         first = found[0]
         text = say(
@@ -279,10 +217,10 @@ def _stale(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
             advice = say("{node}, which published it, has gone: start it again", node=first.gone)
         else:
             advice = say("the node that published it has gone: start it again")
-        yield FrameFinding(FrameTrouble.STALE, _names(found), text, advice)
+        yield _found("stale", _names(found), text, advice)
 
 
-def _gone(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _gone(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     # Endpoints become known a little later than their messages.
     gone = [one for one in heard if one.is_static and not one.publishers and one.age_s > ONCE_S]
     for found in _together(gone, lambda one: (one.gone,)):
@@ -295,21 +233,37 @@ def _gone(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
             else say("{frames}: the node that published it on {topic} has gone", frames=frames, topic=TF_STATIC)
         )
         advice = say("start it again: a node that starts now does not get this frame")
-        yield FrameFinding(FrameTrouble.GONE, _names(found), text, advice)
+        yield _found("gone", _names(found), text, advice)
 
 
-def _clocks(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _clocks(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     moving = [one for one in heard if not one.is_static and one.count > one.faults]
     for found in _together(moving, lambda one: (kind := _clock(one)) and (kind, one.publishers, one.certain)):
-        first = found[0]
-        values: dict[str, object] = {
-            "frames": listed(_names(found)),
-            "node": by_whom([first]),
-            "seconds": abs(first.delay_s),
-            "stamp": first.newest.stamp_s,
-        }
-        text, advice = _CLOCK_WORDS[_clock(first)](values)
-        yield FrameFinding(FrameTrouble.CLOCK, _names(found), text, advice)
+        first, kind = found[0], _clock(found[0])
+        frames, node, seconds = listed(_names(found)), by_whom(found[:1]), abs(first.delay_s)
+        if kind == "other start":
+            stamp = first.newest.stamp_s
+            text = say(
+                "{frames}: stamped {stamp:.1f} s, which cannot be the present time", frames=frames, stamp=stamp
+            )
+            advice = say(
+                "have {node} stamp with its clock, node.get_clock().now(); in simulated time set "
+                "use_sim_time for all nodes or for none",
+                node=node,
+            )
+        elif kind == "future":
+            text = say("{frames}: stamped {seconds:.1f} s in the future", frames=frames, seconds=seconds)
+            advice = say(
+                "set the clocks of both machines by the same server (chrony); {node} must not add time to its stamps",
+                node=node,
+            )
+        else:
+            text = say("{frames}: stamped {seconds:.1f} s before it arrives", frames=frames, seconds=seconds)
+            advice = say(
+                "set the clocks of both machines by the same server (chrony), or find out what holds {node} up",
+                node=node,
+            )
+        yield _found("clock", _names(found), text, advice)
 
 
 def _clock(one: FrameRow) -> str:
@@ -321,40 +275,7 @@ def _clock(one: FrameRow) -> str:
     return "behind" if one.delay_s > BEHIND_S else ""
 
 
-def _of_other_start(values: dict[str, object]) -> tuple[str, str]:
-    return (
-        say("{frames}: stamped {stamp:.1f} s, which cannot be the present time", **values),
-        say(
-            "have {node} stamp with its clock, node.get_clock().now(); in simulated time set "
-            "use_sim_time for all nodes or for none",
-            **values,
-        ),
-    )
-
-
-def _of_future(values: dict[str, object]) -> tuple[str, str]:
-    return (
-        say("{frames}: stamped {seconds:.1f} s in the future", **values),
-        say(
-            "set the clocks of both machines by the same server (chrony); {node} must not add time to its stamps",
-            **values,
-        ),
-    )
-
-
-def _of_past(values: dict[str, object]) -> tuple[str, str]:
-    return (
-        say("{frames}: stamped {seconds:.1f} s before it arrives", **values),
-        say(
-            "set the clocks of both machines by the same server (chrony), or find out what holds {node} up", **values
-        ),
-    )
-
-
-_CLOCK_WORDS = {"other start": _of_other_start, "future": _of_future, "behind": _of_past}
-
-
-def _static_moved(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _static_moved(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     for found in _together(heard, lambda one: one.moved and (one.publishers, one.certain)):
         first = found[0]
         words: dict[str, object] = {
@@ -372,17 +293,17 @@ def _static_moved(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
                 topic=TF,
                 nodes=words["nodes"],
             )
-        yield FrameFinding(FrameTrouble.STATIC_MOVED, _names(found), text, advice)
+        yield _found("static moved", _names(found), text, advice)
 
 
-def _slashed(heard: Iterable[FrameRow]) -> Iterator[FrameFinding]:
+def _slashed(heard: Iterable[FrameRow]) -> Iterator[GraphFinding]:
     for found in _together(heard, lambda one: one.slashed and (one.publishers, one.certain)):
         text = say("{frames}: published with a slash in front", frames=listed(_names(found)))
         advice = say(
             "take it away in {node}: tf2 knows names without one, and others may look for it with the slash",
             node=by_whom(found[:1]),
         )
-        yield FrameFinding(FrameTrouble.SLASH, _names(found), text, advice)
+        yield _found("slash", _names(found), text, advice)
 
 
 def _together(heard: Iterable[FrameRow], key: Callable[[FrameRow], Hashable]) -> list[list[FrameRow]]:
@@ -406,7 +327,7 @@ MOST_COMPARED = 20
 """Roots and names whose slips are looked for: comparing all with all takes long."""
 
 
-def findings_of_tree(tree: FrameTree, named: Mapping[str, str], *, settling: bool = False) -> Iterator[FrameFinding]:
+def findings_of_tree(tree: FrameTree, named: Mapping[str, str], *, settling: bool = False) -> Iterator[GraphFinding]:
     """Yield what is wrong; `named` is topic to the frame that the header of its messages names.
 
     While it is `settling`, nothing is said to be missing.
@@ -419,7 +340,7 @@ def findings_of_tree(tree: FrameTree, named: Mapping[str, str], *, settling: boo
         yield from _unknown(tree, named)
 
 
-def _loops(tree: FrameTree) -> Iterator[FrameFinding]:
+def _loops(tree: FrameTree) -> Iterator[GraphFinding]:
     for loop in tree.loops:
         text = say(
             "{frames} and back to {first}: a loop, which has no root", frames=" → ".join(loop[:8]), first=loop[0]
@@ -431,10 +352,10 @@ def _loops(tree: FrameTree) -> Iterator[FrameFinding]:
             child=loop[0],
             node=by_whom(closing),
         )
-        yield FrameFinding(FrameTrouble.LOOP, loop, text, advice)
+        yield _found("loop", loop, text, advice)
 
 
-def _parents(tree: FrameTree) -> Iterator[FrameFinding]:
+def _parents(tree: FrameTree) -> Iterator[GraphFinding]:
     for frame, parents in sorted(tree.parents.items()):
         if len(parents) < 2:
             continue
@@ -453,17 +374,17 @@ def _parents(tree: FrameTree) -> Iterator[FrameFinding]:
             frame=frame,
             first=first,
         )
-        yield FrameFinding(FrameTrouble.PARENTS, (frame, *parents), text, advice)
+        yield _found("two parents", (frame, *parents), text, advice)
 
 
-def _roots(tree: FrameTree) -> Iterator[FrameFinding]:
+def _roots(tree: FrameTree) -> Iterator[GraphFinding]:
     if len(tree.parts) < 2:
         return
     text = say(
         "{count} trees that nothing joins, with the roots {roots}", count=len(tree.parts), roots=listed(tree.parts)
     )
     main, *others = tree.parts
-    yield FrameFinding(FrameTrouble.ROOTS, tree.parts, text, _to_join(tree, main, others))
+    yield _found("two roots", tree.parts, text, _to_join(tree, main, others))
 
 
 def _to_join(tree: FrameTree, main: str, others: list[str]) -> str:
@@ -485,7 +406,7 @@ def _to_join(tree: FrameTree, main: str, others: list[str]) -> str:
     )
 
 
-def _unknown(tree: FrameTree, named: Mapping[str, str]) -> Iterator[FrameFinding]:
+def _unknown(tree: FrameTree, named: Mapping[str, str]) -> Iterator[GraphFinding]:
     unknown: dict[str, list[str]] = {}
     for topic, frame in sorted(named.items()):
         bare = frame.removeprefix("/")
@@ -503,10 +424,10 @@ def _unknown(tree: FrameTree, named: Mapping[str, str]) -> Iterator[FrameFinding
                 root=tree.roots[0],
                 frame=frame,
             )
-        yield FrameFinding(FrameTrouble.UNKNOWN, (frame,), text, advice)
+        yield _found("unknown frame", (frame,), text, advice)
 
 
-def _both(tree: FrameTree) -> Iterator[FrameFinding]:
+def _both(tree: FrameTree) -> Iterator[GraphFinding]:
     for (parent, child), heard in tree.edges.items():
         if len(heard) < 2:
             continue
@@ -525,7 +446,7 @@ def _both(tree: FrameTree) -> Iterator[FrameFinding]:
             moving=TF,
             static=TF_STATIC,
         )
-        yield FrameFinding(FrameTrouble.BOTH, (child, parent), text, advice)
+        yield _found("both topics", (child, parent), text, advice)
 
 
 @lru_cache(maxsize=4 * MOST_COMPARED)

@@ -6,18 +6,17 @@ In a live graph they do, see `graph.observer.taking`; in a recording nothing of 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from text.sentences import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
-    from collections.abc import Set as AbstractSet
 
-SETTLED_S = 3.0
-"""Endpoints, and their names, become known a little later than the messages arrive."""
 RECENT_S = 5.0
 """Whoever has not sent a moving frame for so long no longer does."""
+Fields: TypeAlias = "tuple[Any, ...]"
+"""Of one transform: its stamp in seconds, x, y, z, and the quaternion x, y, z, w."""
 TOGETHER_S = 0.5
 """Two latched messages that come so close together are of two nodes: a restart takes longer."""
 REPLACED_S = 30.0
@@ -35,19 +34,13 @@ class Publishers:
 
     there: Mapping[bytes, str] = field(default_factory=dict)
     """Gid to the name of the node, empty while that is unknown."""
-    nodes: AbstractSet[str] = frozenset()
-    since_s: float = float("inf")
-    """Since when it is just these nodes."""
     known: dict[bytes, str] = field(default_factory=dict)
     """Those with a name, also if they have gone."""
 
-    def are(self, there: Mapping[bytes, str], now_s: float) -> None:
+    def are(self, there: Mapping[bytes, str]) -> None:
         if there == self.there:
             return
         self.there = there
-        nodes = frozenset(name or say("unknown node") for name in there.values())
-        if nodes != self.nodes:
-            self.nodes, self.since_s = nodes, now_s
         if len(self.known) > MOST_KNOWN:
             self.known.clear()
         self.known.update((gid, name) for gid, name in there.items() if name)
@@ -65,7 +58,7 @@ class _Sent(NamedTuple):
     """The last that a publisher has sent before another one did."""
 
     arrived_s: float
-    fields: tuple[Any, ...]
+    fields: Fields
     beside: bool
     """Whether it was there at the same time as that other one, for sure."""
 
@@ -73,17 +66,12 @@ class _Sent(NamedTuple):
 class Senders:
     """Those of one frame in one parent on one of the topics."""
 
-    __slots__ = ("_candidates", "_first_s", "_gone_s", "_others", "newest")
-
-    def __init__(self, first_s: float) -> None:
+    def __init__(self) -> None:
         self.newest: bytes | None = None
         """Gid of the one that sent the newest; None if it is not told."""
         self._others: dict[bytes, _Sent] = {}
-        self._first_s = first_s
-        self._candidates: AbstractSet[str] | None = None
-        self._gone_s = float("inf")
 
-    def hand_over(self, sender: bytes | None, arrived_s: float, fields: tuple[Any, ...], passed_s: float) -> None:
+    def hand_over(self, sender: bytes | None, arrived_s: float, fields: Fields, passed_s: float) -> None:
         """Say that `sender` sends the next; the one before has sent `fields`, at `arrived_s`.
 
         `passed_s` is the time since then.
@@ -100,8 +88,7 @@ class Senders:
     def who(self, topic: Publishers, arrived_s: float, now_s: float, *, latched: bool) -> PublishedBy:
         """Return who publishes it at `now_s`; the newest has arrived at `arrived_s`."""
         if self.newest is None or self._is_news(topic, now_s):
-            self._narrow_down(topic, arrived_s, now_s)
-            candidates = tuple(sorted(self._candidates or ()))
+            candidates = tuple(sorted({name or say("unknown node") for name in topic.there.values()}))
             return PublishedBy(candidates, certain=len(candidates) < 2)
         gids = [
             gid
@@ -115,13 +102,13 @@ class Senders:
         names = tuple(name for name, _ in sorted(found))
         return PublishedBy(names, certain=True, gone="" if names else topic.known[self.newest])
 
-    def disagree(self, topic: Publishers, fields: tuple[Any, ...], arrived_s: float, now_s: float) -> bool:
+    def disagree(self, topic: Publishers, fields: Fields, arrived_s: float, now_s: float) -> bool:
         """Return whether others that are there have sent other numbers than `fields`, the newest.
 
-        The first four fields are stamps and names, which do not matter.
+        The first field is the stamp, which does not matter.
         """
         return self.newest in topic.there and any(
-            sent.fields and sent.fields[4:] != fields[4:] for _, sent in self._beside(topic, arrived_s, now_s)
+            sent.fields and sent.fields[1:] != fields[1:] for _, sent in self._beside(topic, arrived_s, now_s)
         )
 
     def _is_news(self, topic: Publishers, now_s: float) -> bool:
@@ -142,15 +129,3 @@ class Senders:
                 or now_s - arrived_s > REPLACED_S
             ):
                 yield gid, sent
-
-    def _narrow_down(self, topic: Publishers, arrived_s: float, now_s: float) -> None:
-        """Whoever was not there while the frame came cannot be its publisher."""
-        if arrived_s > self._gone_s:
-            self._first_s, self._gone_s, self._candidates = arrived_s, float("inf"), None
-        known, present = self._candidates, topic.nodes
-        if known is None or now_s - self._first_s < SETTLED_S:
-            self._candidates = present
-        elif arrived_s > topic.since_s + SETTLED_S:
-            self._candidates = known & present or present
-        elif known and known.isdisjoint(present):
-            self._candidates, self._gone_s = frozenset(), now_s

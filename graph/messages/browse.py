@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from graph.messages.fields import INTEGERS, fields_of, parse, ros_name, to_tree
-from graph.messages.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
-from text.sentences import say
+from graph.messages.types import kind_of, load_action, load_message, load_service
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -82,23 +81,12 @@ def interfaces() -> tuple[str, ...]:
 @lru_cache(maxsize=512)
 def definition(type_name: str) -> Definition:
     """Return the definition of a message, service or action. Raises UnknownTypeError."""
-    parts = type_name.split("/")
-    kind = parts[1] if len(parts) == NAME_PARTS else ""
+    kind = kind_of(type_name)
     if kind == "msg":
-        made: tuple[Part, ...] = (_part("message", load_message(type_name)),)
-    elif kind == "srv":
-        service = load_service(type_name)
-        made = (_part("request", service.Request), _part("response", service.Response))
-    elif kind == "action":
-        action = load_action(type_name)
-        names = ("goal", "result", "feedback")
-        made = tuple(_part(name, getattr(action, name.capitalize())) for name in names)
-    else:
-        reason = say(
-            "'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind="msg"
-        )
-        raise UnknownTypeError(type_name, parts[0], reason)
-    return Definition(type_name, made)
+        return Definition(type_name, (_part("message", load_message(type_name)),))
+    names = ("request", "response") if kind == "srv" else ("goal", "result", "feedback")
+    whole = load_service(type_name) if kind == "srv" else load_action(type_name)
+    return Definition(type_name, tuple(_part(name, getattr(whole, name.capitalize())) for name in names))
 
 
 def _installed_in(folder: Path) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """The definitions of message types as text, as a bag stores them, and messages decoded by such a text.
 
-Where a type is installed, its text comes from the library's own store of ROS 2 Jazzy, else from the `.msg` files of
+Where a type is installed, its text comes from the library's own store of this ROS 2, else from the `.msg` files of
 its package, or, where that has none, is made from the fields of its class. Decoding needs no ROS: a type in a bag may
 belong to a package that is not installed, or to another distribution. The trees are those of `graph.data.Value`.
 """
@@ -14,7 +14,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from graph.messages.fields import BYTES, DUMMY, FieldType, parse, to_tree
+from graph.distro import distro
+from graph.heavy_types import IMAGE, POINT_CLOUD
+from graph.messages.fields import BYTES, DUMMY, parse, ros_name, to_tree
 from graph.messages.types import UnknownTypeError, load_action, load_message, load_service
 from text.sentences import say
 
@@ -38,11 +40,9 @@ _WIDE_FIELD = re.compile(r"(?m)^[^\S\n]*wstring(?:<=\d+)?(?P<many>\[[^\]\n]*\])?
 _WIDE_CONSTANT = re.compile(r"(?m)^[^\S\n]*wstring(?=\s+\w+\s*=)")
 _WIDE_IN_IDL = re.compile(r"\bwstring\b(?:\s*<\s*\d+\s*>)?(?=\s*[\w,>])(?!\s+\w+\s*=)")
 _WIDE_LITERAL = re.compile(r'(?<==)\s*L(?=")')
-LARGE = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"})
+LARGE = frozenset({IMAGE, POINT_CLOUD})
 """Types whose bytes rclpy copies three times, and the library once: a cloud of 300 000 points has 5 MB."""
 SEPARATOR = "=" * 80
-MSG_NAMES = {"boolean": "bool", "float": "float32", "double": "float64", "octet": "byte"}
-"""The generator's name of a plain type to its name in a `.msg` file."""
 PLAIN = frozenset(
     {
         *("bool", "byte", "char", "float32", "float64", "string", "wstring"),
@@ -100,14 +100,13 @@ def bag_decoder(kind: TypeText) -> Callable[[bytes], dict[str, Value]]:
     """
     store = _store(kind)
     if kind.name not in store.fielddefs:
-        raise _unknown(
-            kind,
+        raise UnknownTypeError(
             say(
                 "type {type} is not defined in the bag, and is not one of ROS's own; record "
                 "the bag again with its definitions: `deck record`, or `ros2 bag record -s "
                 "mcap`",
                 type=kind.name,
-            ),
+            )
         )
     read = _reader(store, kind.name)
     plan = store.get_msgdef(kind.name)
@@ -160,12 +159,8 @@ def _store(kind: TypeText) -> Typestore:
             store.register(found)
     except (TypesysError, ValueError, KeyError) as error:
         words = say("the definition of type {type} in the bag cannot be read: {reason}", type=kind.name, reason=error)
-        raise _unknown(kind, words) from error
+        raise UnknownTypeError(words) from error
     return store
-
-
-def _unknown(kind: TypeText, words: str) -> UnknownTypeError:
-    return UnknownTypeError(kind.name, kind.name.partition("/")[0], words)
 
 
 def _reader(store: Typestore, type_name: str) -> Callable[[Any], dict[str, Value]]:
@@ -220,7 +215,7 @@ def definition(type_name: str, digest: str = "") -> str:
     `digest`, `RIHS01_...`, is the publisher's hash of its type: a definition in the store with
     another hash is not used. Raises UnknownTypeError for a type that is not installed.
     """
-    store = jazzy()
+    store = typestore()
     if type_name in store.fielddefs and digest in {"", store.hash_rihs01(type_name)}:
         return store.generate_msgdef(type_name, ros_version=2)[0]
     return _gathered(type_name)
@@ -228,16 +223,17 @@ def definition(type_name: str, digest: str = "") -> str:
 
 def hash_of(type_name: str) -> str:
     """Return the hash of a type in the store, empty for any other."""
-    store = jazzy()
+    store = typestore()
     return store.hash_rihs01(type_name) if type_name in store.fielddefs else ""
 
 
 @lru_cache(maxsize=1)
-def jazzy() -> Typestore:
-    """Return the library's types of ROS 2 Jazzy; a tenth of a second the first time."""
+def typestore() -> Typestore:
+    """Return the library's types of this ROS 2, else of its newest; a tenth of a second the first time."""
     from rosbags.typesys import Stores, get_typestore
 
-    return get_typestore(Stores.ROS2_JAZZY)
+    name = f"ros2_{distro()}"
+    return get_typestore(Stores(name) if name in {each.value for each in Stores} else Stores.LATEST)
 
 
 def _gathered(type_name: str) -> str:
@@ -262,7 +258,7 @@ def _installed(type_name: str) -> str:
         if path.is_file():
             return path.read_text(encoding="utf-8", errors="replace").rstrip() + "\n"
     fields: dict[str, str] = _class(type_name).get_fields_and_field_types()
-    return "".join(f"{_written(parse(kind))} {name}\n" for name, kind in fields.items())
+    return "".join(f"{_written(kind)} {name}\n" for name, kind in fields.items())
 
 
 def _class(type_name: str) -> Any:  # noqa: ANN401 - generated, without a base class
@@ -274,19 +270,11 @@ def _class(type_name: str) -> Any:  # noqa: ANN401 - generated, without a base c
     return load_message(type_name)
 
 
-def _written(kind: FieldType) -> str:
+def _written(text: str) -> str:
     """Return how a `.msg` file writes the type of a field."""
-    element = MSG_NAMES.get(kind.element, kind.element)
-    if (of := PARTS.get(element.rpartition("_")[2])) is not None:
-        # In full: readers take a shorter name for a message's, which has another hash.
-        element = element.replace("/", f"/{of}/", 1)
-    if kind.text_limit is not None:
-        element += f"<={kind.text_limit}"
-    if not kind.is_many:
-        return element
-    if kind.size is not None:
-        return f"{element}[{kind.size}]"
-    return f"{element}[<={kind.limit}]" if kind.limit is not None else f"{element}[]"
+    of = PARTS.get(parse(text).element.rpartition("_")[2])
+    # In full: readers take a shorter name for a message's, which has another hash.
+    return ros_name(text) if of is None else ros_name(text).replace("/", f"/{of}/", 1)
 
 
 def _needed(type_name: str, text: str) -> list[str]:

@@ -83,7 +83,7 @@ def _no_fields(value: object) -> str:
     """Say that a value is not the fields of a message; of `x:0`, that a space is missing."""
     first = value[0] if isinstance(value, list) and value else value
     words = space_missing(first) if isinstance(first, str) else None
-    return words or say("expected fields by name, got {value}", value=_shown(value))
+    return words or say("expected fields by name, got {value}", value=shown(value))
 
 
 def _check_comma(before: tuple[str, object], name: object, value: object) -> None:
@@ -107,10 +107,11 @@ def _made(kind: FieldType, value: Value, path: str) -> object:
         return _many(kind, value, path)
     if kind.element == "octet":
         return bytes([_octet(value, path)])
-    return _one(kind, value, path)
+    return one_made(kind, value, path)
 
 
-def _one(kind: FieldType, value: Value, path: str) -> object:
+def one_made(kind: FieldType, value: Value, path: str) -> object:
+    """Return a value for a field that is no list, or for an element of one. Raises FieldError."""
     if kind.is_message:
         return to_message(load_message(kind.message_type), value, path)  # type: ignore[arg-type]
     if kind.element in STRINGS:
@@ -129,12 +130,12 @@ def _many(kind: FieldType, value: Value, path: str) -> object:
         _check_length(kind, len(value), path)
         return _packed(kind, value)
     if not hasattr(value, "__len__") or isinstance(value, (str, bytes, Mapping)):
-        raise FieldError(path, say("expected a list, got {value}", value=_shown(value)))
+        raise FieldError(path, say("expected a list, got {value}", value=shown(value)))
     elements: Sequence[Value] = value  # type: ignore[assignment]
     _check_length(kind, len(elements), path)
     if kind.is_number and _fits_as_it_is(kind, elements):
         return elements
-    made = [_one(kind, _plain(each), f"{path}[{i}]") for i, each in enumerate(elements)]
+    made = [one_made(kind, _plain(each), f"{path}[{i}]") for i, each in enumerate(elements)]
     return _packed(kind, bytes(made)) if kind.element == "octet" else made  # type: ignore[arg-type]
 
 
@@ -168,10 +169,10 @@ def _check_length(kind: FieldType, length: int, path: str) -> None:
 
 def _text(kind: FieldType, value: Value, path: str) -> str:
     if isinstance(value, (bool, int, float)):
-        words = say("expected a string, got {value}: put it in quotes", value=_shown(value))
+        words = say("expected a string, got {value}: put it in quotes", value=shown(value))
         raise FieldError(path, words)
     if not isinstance(value, str):
-        raise FieldError(path, say("expected a string, got {value}", value=_shown(value)))
+        raise FieldError(path, say("expected a string, got {value}", value=shown(value)))
     if kind.text_limit is not None and len(value) > kind.text_limit:
         raise FieldError(
             path, say("expected at most {n} characters, got {length}", n=kind.text_limit, length=len(value))
@@ -186,18 +187,18 @@ def _encoded(value: str, path: str) -> bytes:
     try:
         return value.encode()
     except UnicodeEncodeError as error:
-        raise FieldError(path, say("{value} is not valid Unicode", value=_shown(value))) from error
+        raise FieldError(path, say("{value} is not valid Unicode", value=shown(value))) from error
 
 
 def _boolean(value: Value, path: str) -> bool:
     if not isinstance(value, bool):
-        raise FieldError(path, say("expected true or false, got {value}", value=_shown(value)))
+        raise FieldError(path, say("expected true or false, got {value}", value=shown(value)))
     return value
 
 
 def _float(element: str, value: Value, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise FieldError(path, no_number(value, _shown(value)))
+        raise FieldError(path, no_number(value, shown(value)))
     try:
         number = float(value)
     except OverflowError:
@@ -206,7 +207,7 @@ def _float(element: str, value: Value, path: str) -> float:
     if (isinstance(value, int) and math.isinf(number)) or (
         math.isfinite(number) and 0 < greatest * ROUNDED < abs(number)
     ):
-        raise FieldError(path, say("{value} is too large for a {type}", value=_shown(value), type=element))
+        raise FieldError(path, say("{value} is too large for a {type}", value=shown(value), type=element))
     is_rounded = math.isfinite(number) and 0 < greatest < abs(number)
     return math.copysign(greatest, number) if is_rounded else number
 
@@ -215,12 +216,12 @@ def _integer(element: str, value: Value, path: str) -> int:
     least, greatest = INTEGERS[element]
     whole = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
     if isinstance(value, bool) or not whole:
-        raise FieldError(path, say("expected a whole number, got {value}", value=_shown(value)))
+        raise FieldError(path, say("expected a whole number, got {value}", value=shown(value)))
     number = int(value)  # type: ignore[arg-type]
     if not least <= number <= greatest:
         raise FieldError(
             path,
-            say("expected {least} to {greatest}, got {value}", least=least, greatest=greatest, value=_shown(value)),
+            say("expected {least} to {greatest}, got {value}", least=least, greatest=greatest, value=shown(value)),
         )
     return number
 
@@ -231,7 +232,8 @@ def _octet(value: Value, path: str) -> int:
     return _integer("octet", value, path)
 
 
-def _shown(value: object) -> str:
+def shown(value: object) -> str:
+    """Return a wrong value as an error repeats it."""
     if value is None:
         return say("nothing")
     text = repr(value)
@@ -246,10 +248,9 @@ class Draft:
     stamps: tuple[Path, ...] = ()
     """The fields that hold the time of sending."""
 
-    def dated(self, now_ns: int | None = None) -> Any:  # noqa: ANN401 - generated, no base class
-        """Return the message as it should be sent at this moment, or else by the system clock."""
-        now_ns = time.time_ns() if now_ns is None else now_ns
-        seconds, nanoseconds = divmod(now_ns, NANOSECONDS_PER_S)
+    def dated(self) -> Any:  # noqa: ANN401 - generated, no base class
+        """Return the message as it should be sent at this moment."""
+        seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_S)
         for path in self.stamps:
             field = self.message
             for step in path:

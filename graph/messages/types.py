@@ -5,13 +5,11 @@ from __future__ import annotations
 import importlib
 import threading
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from text.sentences import Words, say
+from graph.distro import distro
+from text.sentences import SaidError, Words, say
 from text.suggestions import nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 FEEDBACK = "_FeedbackMessage"
 """Suffix of the message type on an action's feedback topic."""
@@ -22,49 +20,29 @@ NAME_PARTS = 3
 _LOADING = threading.RLock()
 ON_PYPI = frozenset(
     {
-        "action_msgs",
-        "actionlib_msgs",
-        "builtin_interfaces",
-        "diagnostic_msgs",
-        "geometry_msgs",
-        "lifecycle_msgs",
-        "nav_msgs",
-        "rcl_interfaces",
-        "rosgraph_msgs",
-        "sensor_msgs",
-        "service_msgs",
-        "shape_msgs",
-        "std_msgs",
-        "std_srvs",
-        "stereo_msgs",
-        "test_msgs",
-        "trajectory_msgs",
-        "type_description_interfaces",
-        "unique_identifier_msgs",
-        "visualization_msgs",
+        *("action_msgs", "actionlib_msgs", "builtin_interfaces", "diagnostic_msgs", "geometry_msgs"),
+        *("lifecycle_msgs", "nav_msgs", "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "service_msgs"),
+        *("shape_msgs", "std_msgs", "std_srvs", "stereo_msgs", "test_msgs", "trajectory_msgs"),
+        *("type_description_interfaces", "unique_identifier_msgs", "visualization_msgs"),
     }
 )
 """Packages of messages of ROS 2 Jazzy on PyPI as of 2025-11, as `ros-jazzy-...`."""
 OURS = frozenset({"deck_interfaces"})
 
 
-class UnknownTypeError(Exception):
+class UnknownTypeError(SaidError):
     """No such type is installed here; str() says what to do about it."""
 
-    def __init__(self, type_name: str, package: str, reason: str, install: Mapping[str, str] | None = None) -> None:
-        """Store why `type_name` is unavailable; `package` is where it should have come from.
 
-        `install` has the names of the missing package for `pip`, `apt` and `pixi`.
-        """
-        super().__init__(reason)
-        self.install = install or {}
-        self.type_name = type_name
-        self.package = package
-        self.reason = reason
-
-    def __reduce__(self) -> tuple[type[UnknownTypeError], tuple[object, ...]]:
-        """Make pickling keep all of it: what is raised in the observer's process is told here."""
-        return type(self), (self.type_name, self.package, self.reason, dict(self.install))
+def kind_of(type_name: str, *kinds: str) -> str:
+    """Return `msg`, `srv` or `action`, or of these `kinds` alone. Raises UnknownTypeError for any other name."""
+    parts = type_name.split("/")
+    kinds = kinds or ("msg", "srv", "action")
+    if len(parts) == NAME_PARTS and parts[1] in kinds and all(part.isidentifier() for part in parts):
+        return parts[1]
+    raise UnknownTypeError(
+        say("'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind=kinds[0])
+    )
 
 
 @lru_cache(maxsize=512)
@@ -105,14 +83,8 @@ def load_action(type_name: str) -> type[Any]:
 
 
 def _load(type_name: str, kind: str) -> type[Any]:
-    parts = type_name.split("/")
-    if len(parts) != NAME_PARTS or parts[1] != kind or not all(p.isidentifier() for p in parts):
-        raise UnknownTypeError(
-            type_name,
-            parts[0],
-            say("'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind=kind),
-        )
-    package, _, name = parts
+    kind_of(type_name, kind)
+    package, _, name = type_name.split("/")
     try:
         importlib.import_module(package)
         module = importlib.import_module(f"{package}.{kind}")
@@ -121,15 +93,14 @@ def _load(type_name: str, kind: str) -> type[Any]:
             _import_type_support(found)
     except ModuleNotFoundError as error:
         if error.name == package:
-            words, names = how_to_install(package), install_names(package)
-            raise UnknownTypeError(type_name, package, words, names) from error
-        raise UnknownTypeError(type_name, package, _missing(error, package, kind)) from error
+            raise UnknownTypeError(_how_to_install(package)) from error
+        raise UnknownTypeError(_missing(error, package, kind)) from error
     except Exception as error:
         # A broken package may raise anything, and must not take the observer down.
         reason = _broken(package, error)
-        raise UnknownTypeError(type_name, package, reason) from error
+        raise UnknownTypeError(reason) from error
     if found is None:
-        raise UnknownTypeError(type_name, package, _no_such_name(module, package, kind, name))
+        raise UnknownTypeError(_no_such_name(module, package, kind, name))
     return found
 
 
@@ -181,36 +152,27 @@ def _no_such_name(module: object, package: str, kind: str, name: str) -> Words:
     )
 
 
-def install_names(package: str) -> dict[str, str]:
-    """Return the package's name for `pip`, `apt` and `pixi`; those without it are left out.
+def _how_to_install(package: str) -> Words:
+    """Return words with the commands that install it.
 
-    apt (packages.ros.org) and RoboStack have everything that is released into Jazzy under the same
+    apt (packages.ros.org) and RoboStack have everything that is released into a ROS under the same
     name; whether this package is released cannot be known here.
     """
     if package in OURS:
-        return {}
-    name = f"ros-jazzy-{package.replace('_', '-')}"
-    names = {"apt": name, "pixi": name}
-    return {"pip": name, **names} if package in ON_PYPI else names
-
-
-def how_to_install(package: str) -> Words:
-    """Return words with the commands that install it."""
-    names = install_names(package)
-    if not names:
         return say(
             "package {package} is not installed: it comes with Deck, build it from interfaces/", package=package
         )
-    if "pip" in names:
+    name = f"ros-{distro()}-{package.replace('_', '-')}"
+    if package in ON_PYPI:
         return say(
-            "package {package} is not installed: 'apt install {apt}', 'pip install {pip}' or "
-            "'pixi add {pixi}', or build it and source its workspace",
+            "package {package} is not installed: 'apt install {name}', 'pip install {name}' or "
+            "'pixi add {name}', or build it and source its workspace",
             package=package,
-            **names,
+            name=name,
         )
     return say(
-        "package {package} is not installed: 'apt install {apt}' or 'pixi add {pixi}', or build "
+        "package {package} is not installed: 'apt install {name}' or 'pixi add {name}', or build "
         "it and source its workspace",
         package=package,
-        **names,
+        name=name,
     )

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from graph.messages.fields import fields_of, parse, ros_name, to_tree
 from graph.messages.making import FieldError, NoSuchFieldError, draft, with_words
-from graph.messages.types import NAME_PARTS, UnknownTypeError, load_action, load_message, load_service
+from graph.messages.types import kind_of, load_action, load_message, load_service
 from graph.messages.yaml_text import read_message, to_yaml
-from text.sentences import say
 from text.yaml_tree import Branch, Listing, Scalar, field_name, find, place_of, plain
 
 if TYPE_CHECKING:
@@ -28,20 +27,14 @@ def form_class(type_name: str) -> type[Any]:
 
     Raises UnknownTypeError.
     """
-    parts = type_name.split("/")
-    if len(parts) != NAME_PARTS or parts[1] not in {"msg", "srv", "action"}:
-        reason = say(
-            "'{type}' is not the name of a type; write it as package/{kind}/Name", type=type_name, kind="msg"
-        )
-        raise UnknownTypeError(type_name, parts[0], reason)
-    found: type[Any]
-    if parts[1] == "srv":
-        found = load_service(type_name).Request
-    elif parts[1] == "action":
-        found = load_action(type_name).Goal
-    else:
-        found = load_message(type_name)
-    return found
+    kind = kind_of(type_name)
+    if kind == "srv":
+        request: type[Any] = load_service(type_name).Request
+        return request
+    if kind == "action":
+        goal: type[Any] = load_action(type_name).Goal
+        return goal
+    return load_message(type_name)
 
 
 @lru_cache(maxsize=128)

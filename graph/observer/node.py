@@ -13,8 +13,6 @@ from graph.calls.parameters import ParameterCalls
 from graph.calls.services import Calls
 from graph.data import GraphUpdate, Interest
 from graph.frames.book import FRAME_TOPICS, FrameBook
-from graph.frames.reading import TF_MESSAGE
-from graph.messages.definitions import decoder
 from graph.observer.taps import Taps
 from graph.publishing.dead_man_switch import DeadManSwitch
 from graph.publishing.outbox import Outbox, RepeatedPublications
@@ -23,7 +21,7 @@ from graph.scan import Scan, Signature, is_complete, scan, signature
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from graph.data import ActionRow, FrameRow, NodeRow, Sample, ServiceRow, Value
+    from graph.data import ActionRow, FrameRow, NodeRow, Sample, ServiceRow
     from graph.ros import Ros
     from graph.scan import TopicEnds
 
@@ -53,7 +51,7 @@ class ObserverNode:
         self.serve_urgent: Callable[[], object] = _nothing
         """Called repeatedly during long operations, for what cannot wait."""
         self._ros = ros
-        self._frames = FrameBook(_decode_transforms)
+        self._frames = FrameBook()
         self._taps = Taps(ros.node, self._frames)
         self._scan = Scan()
         self._signature: Signature | None = None
@@ -165,7 +163,7 @@ class ObserverNode:
             ends = self._scan.topics.get(topic)
             everyone = ends.everyone_publishing if ends else ()
             there = {end.gid: end.node if end.is_named else "" for end in everyone}
-            self._frames.published_by(topic, there, now_s)
+            self._frames.published_by(topic, there)
         return self._frames.rows(now_s)
 
     def _update(self, samples: dict[str, tuple[Sample, ...]], frames: tuple[FrameRow, ...]) -> GraphUpdate | None:
@@ -189,11 +187,6 @@ class ObserverNode:
             lifecycles=inner[0],
             containers=inner[1],
         )
-
-
-def _decode_transforms(raw: bytes) -> dict[str, Value]:
-    # Raises if the type is not installed, which only bytes of a foreign representation need.
-    return decoder(TF_MESSAGE)(raw)
 
 
 def _nothing() -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from graph.data import ANSWER_WITHIN_S, CallResult, ParametersResult, SetResult
 from graph.inner_states import LevelResult, TransitionResult
-from text.sentences import reason_of
+from text.sentences import SaidError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,13 +31,8 @@ WITHDRAWN_LATE_S = 0.5
 T = TypeVar("T")
 
 
-class ObserverError(Exception):
+class ObserverError(SaidError):
     """The observer cannot work, or has been stopped; `words` says why."""
-
-    def __init__(self, words: str) -> None:
-        """Store the reason, made by `text.sentences.say`."""
-        super().__init__(words)
-        self.words = words
 
 
 @dataclass(frozen=True)
@@ -401,16 +396,14 @@ class SetParameters(Request[SetResult]):
 class ChangeState(Request[TransitionResult]):
     """Have a node with a lifecycle make a transition, by its name: `configure`.
 
-    The result says what it led to, or in words why not. `timeout_s` is for every answer but that to the transition
-    itself, which may take longer.
+    The result says what it led to, or in words why not. The transition itself may take longer than other answers.
     """
 
     node: str
     transition: str
-    timeout_s: float = ANSWER_WITHIN_S
 
     def begin(self, node: ObserverNode, future: Future[TransitionResult]) -> None:
-        node.lifecycles.change(self.node, self.transition, self.timeout_s, future)
+        node.lifecycles.change(self.node, self.transition, future)
 
     def refused(self, error: Exception, elapsed_s: float = 0.0) -> TransitionResult:
         del elapsed_s
@@ -423,10 +416,9 @@ class LogLevel(Request[LevelResult]):
 
     node: str
     level: str | None = None
-    timeout_s: float = ANSWER_WITHIN_S
 
     def begin(self, node: ObserverNode, future: Future[LevelResult]) -> None:
-        node.logger_levels.ask(self.node, self.level, self.timeout_s, future)
+        node.logger_levels.ask(self.node, self.level, future)
 
     def refused(self, error: Exception, elapsed_s: float = 0.0) -> LevelResult:
         del elapsed_s

@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from graph.data import Sample
+from graph.heavy_types import IMAGE, POINT_CLOUD
 from graph.messages.definitions import decoder
 from graph.messages.stamps import delay_reader, frame_id
 from graph.messages.stand_in import stand_in
@@ -15,12 +16,16 @@ from graph.messages.types import UnknownTypeError, load_message, not_decoded
 from graph.observer.rates import Arrival, RateMeter
 from graph.observer.taking import SENDER, SenderReader, TakeError
 from graph.qos import TRANSIENT_LOCAL, Qos, profile
+from graph.ros import subscribe, unsubscribe
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rclpy.node import Node
     from rclpy.subscription import Subscription
+
+    TakeEvery: TypeAlias = Callable[[bytes, float, int | None, bytes | None], None]
+    """Takes each message of a topic: when it arrived, its number at its publisher, and which one that is."""
 
 
 class Losses:
@@ -57,13 +62,6 @@ class Losses:
             self._event = None
 
 
-class TakeEvery(Protocol):
-    """Takes each message of a topic."""
-
-    def __call__(self, raw: bytes, arrived_s: float, number: int | None, sender: bytes | None) -> None:
-        """Take the next: when it arrived, its number at its publisher, and which one that is."""
-
-
 DEEP = 200
 DEEP_OF_EVERY = 2000
 """Where no message may be missed."""
@@ -71,7 +69,7 @@ SHALLOW = 4
 """A fragmented message occupies a slot while it is being reassembled, so 1 would starve."""
 QUEUE_BYTES = 4_000_000
 """Bytes that may wait in one queue."""
-LARGE_TYPES = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/OccupancyGrid"})
+LARGE_TYPES = frozenset({IMAGE, POINT_CLOUD, "nav_msgs/msg/OccupancyGrid"})
 FOLLOWED = 200
 """Messages per poll that a follower gets; older ones of the same poll are only counted."""
 NANOSECONDS = 1e-9
@@ -102,8 +100,6 @@ class Tap:
         A type that is not installed is measured if the middleware allows it, but not decoded.
         Raises UnknownTypeError, and what rclpy raises.
         """
-        from rclpy.event_handler import SubscriptionEventCallbacks
-
         self.topic = topic
         self.type_name = type_name
         self.qos = qos
@@ -123,14 +119,7 @@ class Tap:
         self._numbered = True
         self._hears = False
         """Whether a message has come since this subscription was created."""
-        self._subscription: Subscription = node.create_subscription(
-            self._cls,
-            topic,
-            _never_called,
-            profile(qos, depth),
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-            raw=True,
-        )
+        self._subscription = subscribe(node, self._cls, topic, profile(qos, depth), raw=True)
         self._losses = Losses(self._subscription)
         self._senders = SenderReader.load() if every else None
 
@@ -180,10 +169,7 @@ class Tap:
     def close(self) -> None:
         self._losses.close()
         self._end_senders()
-        self._node.destroy_subscription(self._subscription)
-        # rclpy forgets none, for an executor that does not exist here.
-        entities = self._node.default_callback_group.entities
-        entities.difference_update([each for each in entities if each() is None])
+        unsubscribe(self._node, self._subscription)
 
     def _take_all(self, decode: int) -> tuple[list[Arrival], deque[_Kept]]:
         batch: list[Arrival] = []
@@ -278,7 +264,3 @@ def _class_for(type_name: str) -> tuple[type[Any], UnknownTypeError | None]:
         if cls is None:
             raise
         return cls, error
-
-
-def _never_called(message: Any) -> None:  # noqa: ANN401
-    """Stand in for the callback that rclpy insists on; no executor ever spins the node."""

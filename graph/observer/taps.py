@@ -4,86 +4,51 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from graph.data import Interest, Sample, TopicRow, Trouble
-from graph.frames.book import FRAME_TOPICS
-from graph.frames.reading import TF_MESSAGE
+from graph.frames.book import FRAME_TOPICS, TF_MESSAGE
 from graph.heavy_types import IMAGES
 from graph.messages.types import UnknownTypeError, not_subscribed
 from graph.observer.rates import QUIET_S
 from graph.observer.tap import FOLLOWED, LARGE_TYPES, Tap, first_depth
 from graph.pictures.source import THINNED, host_of, is_away, picture_source, raw_from_afar, to_see
-from graph.qos import TRANSIENT_LOCAL, Qos, to_hear
-from graph.qos_compatibility import mismatches
+from graph.qos import TRANSIENT_LOCAL, Qos, mismatches, to_hear
 from graph.scan import Scan, TopicEnds
 from text.ros_names import TF_STATIC
+from text.sentences import say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable
 
     from rclpy.node import Node
 
     from graph.frames.book import FrameBook
-    from graph.qos_compatibility import Mismatch
 
 
-MOST_PAIRS = 5
-"""Pairs that are described in words; the rest are only counted."""
-
-
-@dataclass(frozen=True)
-class Diagnosis:
-    """A trouble, or a remark if there is none, with its details."""
-
-    trouble: Trouble | None = None
-    detail: str = ""
-    facts: Mapping[str, str] = field(default_factory=dict)
-
-
-def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> Diagnosis:
-    """Return what is wrong with the topic, regardless of its messages.
+def structural(ends: TopicEnds, shown_type: str, unknown: UnknownTypeError | None) -> tuple[Trouble | None, str]:
+    """Return what is wrong with the topic, regardless of its messages, and its detail.
 
     `shown_type` is the type that Deck decodes, `unknown` why it cannot.
     """
     if unknown is not None:
-        return Diagnosis(
-            Trouble.UNKNOWN_TYPE,
-            unknown.reason,
-            {"type": unknown.type_name, "package": unknown.package, "reason": unknown.reason, **unknown.install},
-        )
+        return Trouble.UNKNOWN_TYPE, unknown.words
     if not ends.everyone_publishing:
-        return Diagnosis(Trouble.NO_PUBLISHER, "nobody publishes this topic")
-    found = mismatches(ends.everyone_publishing, ends.subscribers)
-    if found:
-        return _misfit(found)
+        return Trouble.NO_PUBLISHER, ""
+    # Two identical endpoints of one node give the same sentence.
+    if found := list(dict.fromkeys(mismatches(ends.everyone_publishing, ends.subscribers))):
+        words = say("{what} {mend}", what=found[0].what, mend=found[0].mend)
+        more = len(found) - 1
+        more_words = say("{what} (and {more} more such pairs)", what=words, more=more)
+        return Trouble.QOS_MISMATCH, more_words if more else words
     if len(ends.type_names) > 1:
         types = ", ".join(ends.type_names)
-        return Diagnosis(
-            None,
-            f"peers disagree about the type: {types}; shown is {shown_type}",
-            {"types": types, "shown": shown_type},
+        return None, say(
+            "The endpoints use different types: {types}; shown is {shown}.", types=types, shown=shown_type
         )
-    return Diagnosis()
-
-
-def _misfit(found: Sequence[Mismatch]) -> Diagnosis:
-    """Return all incompatible pairs in words, and the first one as facts."""
-    # Two identical endpoints of one node give the same sentence.
-    told = list(dict.fromkeys(found))
-    more = len(told) - MOST_PAIRS
-    words = [f"{pair.what} {pair.mend}" for pair in told[:MOST_PAIRS]]
-    words += [f"(and {more} more pairs)"] if more > 0 else []
-    others = {"more": str(len(told) - 1)} if len(told) > 1 else {}
-    return Diagnosis(Trouble.QOS_MISMATCH, " ".join(words), told[0].facts() | others)
-
-
-def quiet(seconds: float, *, ever: bool) -> Diagnosis:
-    """Return that nothing has come for `seconds`; `ever` says whether anything came before."""
-    since = "" if ever else ", and never before"
-    return Diagnosis(Trouble.QUIET, f"no data for {seconds:.0f} s{since}", {"seconds": f"{seconds:.0f}"})
+    return None, ""
 
 
 LINGER_S = 30.0
@@ -207,8 +172,7 @@ class Taps:
 
     def _row(self, topic: str, row: TopicRow, now_s: float) -> TopicRow:
         if topic in self._taps:
-            measured = _measured(row, self._taps[topic], now_s)
-            return _lost_on_the_way(measured) if self._comes_raw(topic) else measured
+            return replace(_measured(row, self._taps[topic], now_s), raw_from_afar=self._comes_raw(topic))
         source = self._sources.get(topic)
         if source in self._taps:
             return _seen_by(row, _measured(self._rows[source], self._taps[source], now_s))
@@ -273,7 +237,7 @@ class Taps:
                 self._refused[key] = error
             except Exception as error:  # noqa: BLE001 - a second type under one name, for one
                 reason = not_subscribed(topic, type_name, error)
-                self._refused[key] = UnknownTypeError(type_name, type_name.split("/")[0], reason)
+                self._refused[key] = UnknownTypeError(reason)
         made = self._taps.get(topic)
         return made.unknown if made else self._refused[key]
 
@@ -307,15 +271,14 @@ class Taps:
         return 1 if topic in self._interest.watched.union(self._sources.values()) else 0
 
     def _still_row(self, topic: str, ends: TopicEnds, unknown: UnknownTypeError | None) -> TopicRow:
-        finding = structural(ends, _type_to_show(ends), unknown)
+        trouble, detail = structural(ends, _type_to_show(ends), unknown)
         return TopicRow(
             topic,
             ends.type_names,
             len(ends.publishers),
             len(ends.subscribers),
-            trouble=finding.trouble,
-            detail=finding.detail,
-            facts=finding.facts,
+            trouble=trouble,
+            detail=detail,
             published_by=ends.publishers,
             subscribed_by=ends.subscribers,
             own_publishers=len(ends.own_publishers),
@@ -325,7 +288,7 @@ class Taps:
 
 def _measured(row: TopicRow, tap: Tap, now_s: float) -> TopicRow:
     """Return the row with what the tap has measured."""
-    finding = _finding(row, tap, now_s)
+    trouble, detail = _trouble(row, tap, now_s)
     return replace(
         row,
         hz=tap.meter.hz(now_s),
@@ -340,9 +303,8 @@ def _measured(row: TopicRow, tap: Tap, now_s: float) -> TopicRow:
         count=tap.meter.count,
         frame_id=tap.frame_id,
         measured=True,
-        trouble=finding.trouble,
-        detail=finding.detail,
-        facts=finding.facts,
+        trouble=trouble,
+        detail=detail,
     )
 
 
@@ -355,31 +317,20 @@ def _seen_by(row: TopicRow, source: TopicRow) -> TopicRow:
         pictures_from=source.name,
         trouble=source.trouble,
         detail=source.detail,
-        facts=source.facts,
     )
 
 
-def _lost_on_the_way(row: TopicRow) -> TopicRow:
-    """Return the row of raw pictures from another machine: silence may be loss."""
-    if row.trouble is not Trouble.QUIET:
-        return row
-    words = f"{row.detail}; raw pictures from another machine are lost with any of their packets"
-    return replace(row, detail=words, facts={**row.facts, "raw": row.name})
-
-
-def _finding(row: TopicRow, tap: Tap, now_s: float) -> Diagnosis:
+def _trouble(row: TopicRow, tap: Tap, now_s: float) -> tuple[Trouble | None, str]:
     if row.trouble is not None:
-        return Diagnosis(row.trouble, row.detail, row.facts)
+        return row.trouble, row.detail
     if tap.broken:
-        facts = {"type": tap.type_name, "package": "", "reason": tap.broken}
-        return Diagnosis(Trouble.UNKNOWN_TYPE, tap.broken, facts)
+        return Trouble.UNKNOWN_TYPE, tap.broken
     age_s = tap.meter.age_s(now_s)
-    if age_s is None and now_s - tap.since_s > QUIET_S:
-        return quiet(now_s - tap.since_s, ever=False)
     # A latched topic need not publish again.
-    if age_s is not None and tap.meter.is_quiet(now_s) and tap.qos.durability != TRANSIENT_LOCAL:
-        return quiet(age_s, ever=True)
-    return Diagnosis(row.trouble, row.detail, row.facts)
+    silent = tap.meter.is_quiet(now_s) and tap.qos.durability != TRANSIENT_LOCAL
+    if now_s - tap.since_s > QUIET_S if age_s is None else silent:
+        return Trouble.QUIET, ""
+    return None, row.detail
 
 
 def _as_tf2_hears(ends: TopicEnds) -> Qos:

@@ -81,11 +81,11 @@ def _measured(numbers: NDArray[np.generic], encoding: str) -> tuple[NDArray[np.f
     return metres, np.isfinite(metres) & (metres > 0)
 
 
-def ramp_colours(steps: int = 256) -> Rgb:
-    """Return the colour ramp of depth from near to far, shape (steps, 3)."""
+def ramp_colours() -> Rgb:
+    """Return the colour ramp of depth from near to far, shape (256, 3)."""
     import numpy as np
 
-    at = np.linspace(0, len(RAMP) - 1, steps)
+    at = np.linspace(0, len(RAMP) - 1, 256)
     channels = [np.interp(at, range(len(RAMP)), channel) for channel in zip(*RAMP, strict=True)]
     colours: Rgb = np.stack(channels, axis=1).astype(np.uint8)
     return colours

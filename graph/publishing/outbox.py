@@ -14,7 +14,7 @@ from graph.messages.types import load_message
 from graph.qos import RELIABLE, TRANSIENT_LOCAL, Qos, profile, to_be_heard
 from graph.ros import ONLY_LISTENING
 from graph.scan import subscriptions
-from text.sentences import reason_of, say
+from text.sentences import SaidError, reason_of, say
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,13 +37,8 @@ DEPTH = 200
 """Queue of outgoing messages: a burst must not overwrite what is not acknowledged yet."""
 
 
-class PublishError(Exception):
+class PublishError(SaidError):
     """The message cannot be published; str() says why, `words` says it in translatable form."""
-
-    def __init__(self, words: str) -> None:
-        """Store the reason, made by `text.sentences.say`."""
-        super().__init__(words)
-        self.words = words
 
 
 @dataclass

@@ -178,21 +178,17 @@ class Recorder:
         *,
         hidden: bool = False,
         without: AbstractSet[str] = frozenset(),
-        reserve_bytes: int = RESERVE_BYTES,
-        wanted: Callable[[str, Sequence[str]], bool] | None = None,
     ) -> None:
         """`topics`: None for all, including those that appear later.
 
-        `wanted` decides in its place, by the name of a topic and its types.
-
         With `hidden`, all includes the inner topics of actions; the types `without` are left out.
-        It stops by itself when no more than `reserve_bytes` are free on the disk.
+        It stops by itself when no more than `RESERVE_BYTES` are free on the disk.
         """
         self._domain = domain
         self._discovery = discovery
         self._folder = folder
-        self._choice = None if topics is None else frozenset(topics), hidden, without, wanted
-        self._room = DiskRoom(folder, reserve_bytes)
+        self._choice = None if topics is None else frozenset(topics), hidden, without
+        self._room = DiskRoom(folder)
         self._error = ""
         self._since_s = time.time()
         self._begun_s = time.monotonic()

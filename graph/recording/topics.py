@@ -15,14 +15,14 @@ from collections.abc import Set as AbstractSet
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from graph.data import EndpointInfo
 from graph.housekeeping import is_hidden
 from graph.messages.definitions import definition, hash_of
 from graph.messages.types import UnknownTypeError, load_message, not_subscribed
 from graph.observer.tap import LARGE_TYPES
 from graph.qos import Qos, profile, to_hear
 from graph.recording.writer import NANOSECONDS, BagTopic, Message, qos_offer
-from graph.scan import full_name
+from graph.ros import open_ros, subscribe, taken, unsubscribe
+from graph.scan import publishers
 from text.sentences import say
 
 if TYPE_CHECKING:
@@ -127,44 +127,27 @@ class RecordingTap:
 
     def listen(self, *, wanted: bool) -> None:
         """Subscribe, or end the subscription until it is wanted again. Raises what rclpy raises."""
-        from rclpy.event_handler import SubscriptionEventCallbacks
-
         if not wanted:
             self.close()
         elif self._subscription is None:
-            self._subscription = self._node.create_subscription(
-                self._cls,
-                self.topic.name,
-                # rclpy insists on a callback, and no executor ever spins the node.
-                lambda _message: None,
-                profile(self.qos, self._depth),
-                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-                raw=True,
-            )
+            qos = profile(self.qos, self._depth)
+            self._subscription = subscribe(self._node, self._cls, self.topic.name, qos, raw=True)
 
     def drain(self) -> list[Message]:
         if self._subscription is None:
             return []
-        taken: list[Message] = []
+        messages: list[Message] = []
         numbers: list[int] = []
-        handle = self._subscription.handle
-        with handle:
-            # A publisher faster than this loop must not keep it busy for ever.
-            for _ in range(2 * self._depth):
-                found = handle.take_message(self._cls, True)
-                if found is None:
-                    break
-                raw, info = found
-                stamp_ns = info["received_timestamp"] or int(time.time() * NANOSECONDS)
-                number = info["publication_sequence_number"]
-                if number is not None:
-                    numbers.append(number)
-                sent_ns = info["source_timestamp"] or stamp_ns
-                taken.append(Message(stamp_ns, self.topic, raw, sent_ns))
+        for raw, info in taken(self._subscription, 2 * self._depth):
+            stamp_ns = info["received_timestamp"] or int(time.time() * NANOSECONDS)
+            number = info["publication_sequence_number"]
+            if number is not None:
+                numbers.append(number)
+            messages.append(Message(stamp_ns, self.topic, raw, info["source_timestamp"] or stamp_ns))
         # Asked after the messages were taken: by then their senders are known.
         publishers = lru_cache(self._publishers_so_far)
         self.lost += sum(self._sequences.missing(number, publishers) for number in numbers)
-        return taken
+        return messages
 
     def know(self, publishers: Sequence[TopicEndpointInfo]) -> None:
         self._ever.update(tuple(info.endpoint_gid) for info in publishers)
@@ -175,7 +158,7 @@ class RecordingTap:
 
     def close(self) -> None:
         if self._subscription is not None:
-            self._node.destroy_subscription(self._subscription)
+            unsubscribe(self._node, self._subscription)
             self._subscription = None
 
 
@@ -226,7 +209,7 @@ class RecordingTopics:
         if not found:
             self._publishers.pop(name, None)
             return
-        qos = to_hear([_end(info) for info in found])
+        qos = to_hear(publishers(self._node, name))
         tap = self._taps.get(name)
         if tap is None:
             tap = self._open(name, types, found, qos)
@@ -258,7 +241,7 @@ class RecordingTopics:
             tap = RecordingTap(self._node, topic, qos)
             tap.listen(wanted=self._choice.asked_for(topic))
         except UnknownTypeError as error:
-            self.skipped[name] = error.reason
+            self.skipped[name] = error.words
             return None
         except Exception as error:  # noqa: BLE001 - a second type under one name, for one
             self.skipped[name] = not_subscribed(name, type_name, error)
@@ -267,16 +250,6 @@ class RecordingTopics:
         self._sink.add_topic(topic, text)
         self._taps[name] = tap
         return tap
-
-
-def _end(info: TopicEndpointInfo) -> EndpointInfo:
-    qos = info.qos_profile
-    return EndpointInfo(
-        full_name(info.node_name, info.node_namespace),
-        info.topic_type,
-        qos.reliability.name.lower(),
-        qos.durability.name.lower(),
-    )
 
 
 class Relay:
@@ -307,8 +280,6 @@ class Relay:
     def _run(self) -> None:
         try:
             # This imports rclpy; the caller need not wait for it.
-            from graph.ros import open_ros
-
             ros = open_ros(*self._place, "view")
             try:
                 self._take_turns(RecordingTopics(ros.node, self._choice, self._sink))

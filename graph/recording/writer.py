@@ -15,11 +15,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from mcap.data_stream import RecordBuilder
-from mcap.records import DataEnd, Footer
-from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
-
 from graph.bag.errors import not_made, not_written
+from graph.distro import distro
 from text.sentences import Words
 
 if TYPE_CHECKING:
@@ -92,6 +89,8 @@ class BagFile:
 
     def __init__(self, folder: Path) -> None:
         """Create the folder, which must not exist yet. Raises BagError."""
+        from mcap.writer import CompressionType, Writer
+
         self.topics: list[BagTopic] = []
         self.path = folder / f"{folder.name}.mcap"
         self._schemas: dict[str, int] = {}
@@ -194,7 +193,7 @@ class BagFile:
             # Made anew: YAML would write one object in two places as an alias.
             "files": [{"path": self.path.name, **self._facts()}],
             "custom_data": None,
-            "ros_distro": os.environ.get("ROS_DISTRO", "jazzy"),
+            "ros_distro": distro(),
         }
 
     def _facts(self) -> dict[str, object]:
@@ -248,6 +247,10 @@ def _as_yaml(content: object) -> str:
 
 def _end_without_summary() -> bytes:
     """Return what ends an MCAP file properly; readers find its messages without an index."""
+    from mcap.data_stream import RecordBuilder
+    from mcap.records import DataEnd, Footer
+    from mcap.writer import MCAP0_MAGIC
+
     builder = RecordBuilder()
     DataEnd(0).write(builder)
     Footer(0, 0, 0).write(builder)

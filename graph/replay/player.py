@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from graph.data import EndpointInfo, NodeRow, Sample, TopicRow, Trouble
-from graph.frames.book import FRAME_TOPICS, FrameBook
-from graph.frames.reading import TF_MESSAGE
+from graph.frames.book import FRAME_TOPICS, TF_MESSAGE, FrameBook
 from graph.messages.definitions import bag_decoder, begins_with_header
 from graph.messages.stamps import frame_id
 from graph.messages.types import UnknownTypeError, not_decoded
 from graph.observer.rates import QUIET_S, WINDOW_S, Arrival, RateMeter
-from graph.observer.taps import quiet
 from graph.qos import TRANSIENT_LOCAL
+from text.i18n import N_
 from text.ros_names import TF_STATIC
+from text.sentences import say
 
 if TYPE_CHECKING:
     from graph.bag.reading import Bag, TopicInBag
-    from graph.data import FrameRow, Interest, Value
+    from graph.data import FrameRow, Interest
 
 RATES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Factors of the original speed."""
@@ -34,8 +34,7 @@ BEFORE_NS = int(WINDOW_S / NANOSECONDS)
 """Seconds read before the target of a jump, so that rates and newest messages are there at once."""
 LONGEST_TURN_S = 0.2
 """Limit per step: a bag that cannot be read fast enough is played more slowly."""
-RECORDED = {"recorded": ""}
-"""Fact of a topic that is silent in a bag: there is no node to look at."""
+SILENT = N_("Nothing of it was recorded around here: go on, or jump.")
 
 
 @dataclass(frozen=True)
@@ -149,7 +148,7 @@ class ReplayTopics:
         kinds: dict[str, list[TopicInBag]] = {}
         for topic in topics:
             kinds.setdefault(topic.name, []).append(topic)
-        self._frames = FrameBook(_tree_reader(kinds))
+        self._frames = FrameBook()
         self._topics = {name: ReplayTopic(kinds[name], self._frames) for name in sorted(kinds)}
         self.node = NodeRow(NODE, publishes=tuple(self._topics))
 
@@ -171,7 +170,7 @@ class ReplayTopics:
     def frames(self, now_s: float) -> tuple[FrameRow, ...]:
         """Return a row for each frame as of `now_s`, unix time in the bag."""
         for topic in FRAME_TOPICS:
-            self._frames.published_by(topic, {b"": NODE}, now_s)
+            self._frames.published_by(topic, {b"": NODE})
         return self._frames.rows(now_s)
 
     def samples(
@@ -189,9 +188,7 @@ class ReplayTopics:
         """Return a row for each topic of the bag and each that is wanted, sorted by name."""
         rows = {name: topic.row(now_s, begun_s) for name, topic in self._topics.items()}
         for name in interest.named - rows.keys():
-            rows[name] = TopicRow(
-                name, (), 0, 0, trouble=Trouble.NO_PUBLISHER, detail="not in this recording", facts=RECORDED
-            )
+            rows[name] = TopicRow(name, (), 0, 0, trouble=Trouble.NO_PUBLISHER, detail=say(SILENT), recorded=True)
         return tuple(rows[name] for name in sorted(rows))
 
 
@@ -274,22 +271,17 @@ class ReplayTopic:
     def _with_trouble(self, row: TopicRow, now_s: float, begun_s: float) -> TopicRow:
         if self._broken:
             return replace(row, trouble=Trouble.UNKNOWN_TYPE, detail=self._broken)
-        if self.is_latched:
-            return row
-        if row.age_s is None and now_s - begun_s > QUIET_S:
-            finding = quiet(now_s - begun_s, ever=False)
-        elif row.age_s is not None and self._meter.is_quiet(now_s):
-            finding = quiet(row.age_s, ever=True)
-        else:
-            return row
-        return replace(row, trouble=finding.trouble, detail=finding.detail, facts={**finding.facts, **RECORDED})
+        quiet = now_s - begun_s > QUIET_S if row.age_s is None else self._meter.is_quiet(now_s)
+        if quiet and not self.is_latched:
+            return replace(row, trouble=Trouble.QUIET, detail=say(SILENT))
+        return row
 
     def _sample(self, message: Newest, wall_s: float, now_ns: int) -> Sample | None:
         kind = self._shown.kind
         try:
             value = bag_decoder(kind)(message.raw)
         except UnknownTypeError as error:
-            self._broken = error.reason
+            self._broken = error.words
             return None
         except Exception as error:  # noqa: BLE001 - no content of a bag must end the replay
             self._broken = not_decoded(kind.name, error)
@@ -306,18 +298,10 @@ def _still_row(kinds: Sequence[TopicInBag], shown: TopicInBag) -> TopicRow:
         EndpointInfo(NODE, each.kind.name, each.reliability or "unknown", each.durability or "unknown")
         for each in kinds
     )
-    row = TopicRow(shown.name, types, len(ends), 0, measured=True, published_by=ends)
+    row = TopicRow(shown.name, types, len(ends), 0, measured=True, recorded=True, published_by=ends)
     if len(types) == 1:
         return row
-    facts = {"types": ", ".join(types), "shown": shown.kind.name}
-    return replace(row, detail=f"more than one type: {facts['types']}", facts=facts)
-
-
-def _tree_reader(kinds: Mapping[str, Sequence[TopicInBag]]) -> Callable[[bytes], dict[str, Value]]:
-    """Return what decodes the messages of /tf and /tf_static in another representation."""
-    found = [each.kind for name in FRAME_TOPICS for each in kinds.get(name, ())]
-
-    def read(raw: bytes) -> dict[str, Value]:
-        return bag_decoder(next(kind for kind in found if kind.name == TF_MESSAGE))(raw)
-
-    return read
+    words = say(
+        "The endpoints use different types: {types}; shown is {shown}.", types=", ".join(types), shown=shown.kind.name
+    )
+    return replace(row, detail=words)

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import os
 import time
+from collections.abc import AsyncIterator, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from launcher.client.inbox import Inbox, newer
 from launcher.client.running import find_running, kill_supervisor, left_behind, left_of, running_records
 from launcher.client.start import StartingSupervisor
 from launcher.client.stop_road import StopRoad
-from launcher.consent import Agents, ConsentVerdict
+from launcher.consent import Agents, Approval, ConsentAnswer, ConsentVerdict
 from launcher.control.socket import connect
 from launcher.errors import (
     ConnectionLostError,
@@ -34,25 +35,19 @@ from launcher.events import (
     UnguardedEvent,
     unpack_event,
 )
-from launcher.processes.table import read_process
+from launcher.processes.table import Process, read_process
 from launcher.run_id import supervisor_of
 from launcher.rundir import log_dir, run_dir
 from launcher.serial_ports import serial_ports
-from launcher.status import unpack_line
+from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, VERSION, encode, pack, unpack
 from text.nested import read_json
 from text.packing import pack_text, unpack_text
-from text.sentences import say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Iterable, Sequence
-
-    from launcher.consent import Approval, ConsentAnswer
-    from launcher.processes.table import Process
     from launcher.profile.load import Profile
-    from launcher.status import LogLine, NodeStatus, SessionInfo, Severity, Stray
-    from text.sentences import Words
 
 HELLO_WITHIN_S = 10.0
 SUSPENDED_S, LOOK_S = 1.0, 0.1
@@ -210,7 +205,8 @@ async def _greeted(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, f
         writer.write(encode({"deck": VERSION}))
         said: dict[str, Any] = read_json(await _first_line(reader, supervisor_of(folder.name)))
         if said.get("deck") == VERSION:
-            return unpack(Hello, said)
+            hello: Hello = unpack(Hello, said)
+            return hello
     except asyncio.TimeoutError as problem:
         raise SilentSupervisorError(_silent(supervisor_of(folder.name))) from problem
     except (OSError, ValueError) as problem:
@@ -323,7 +319,7 @@ class SupervisorClient:
     async def history(self, node: str | None, limit: int) -> list[LogLine]:
         """Return the newest lines, oldest first, of one node, or of all nodes in order of time."""
         lines = await self._ask("history", node=node, limit=limit)
-        return [unpack_line(line) for line in lines]
+        return [LogLine.unpacked(line) for line in lines]
 
     async def stop_strays(self, strays: Iterable[Stray]) -> None:
         """End these processes of an earlier run; return when they have ended."""

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import launcher
+from launcher.processes.prctl import ROOM_ARGUMENT, room_for_marks
 from launcher.processes.signal import send
 from launcher.processes.table import processes
-from launcher.processes.title import ROOM_ARGUMENT, room_for_marks
 from text.nested import read_json
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from launcher.supervisor.plan import Plan
 
-LESSON_PACKAGES = ("nodes",)
-"""The nodes of most profiles are in this package. It is only named here, not imported."""
 ANSWER_WITHIN_S = 30.0
 END_WITHIN_S = 4.0
 """How long a supervisor that is no longer wanted may take to stop what it has started."""
@@ -43,7 +41,7 @@ class StartingSupervisor:
         self._begun = False
         self._words = os.memfd_create("supervisor")
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "launcher.supervisor", *LESSON_PACKAGES, ROOM_ARGUMENT],
+            [sys.executable, "-m", "launcher.supervisor", ROOM_ARGUMENT],
             # In that folder `launcher` is this package, whatever else the user's folder may
             # contain.
             cwd=Path(launcher.__file__).parent.parent,
@@ -103,7 +101,7 @@ class StartingSupervisor:
         self._begun = True
         try:
             try:
-                answer = await asyncio.wait_for(self._give(plan), ANSWER_WITHIN_S)
+                answer = await asyncio.wait_for(self._answer(plan), ANSWER_WITHIN_S)
             except asyncio.TimeoutError:
                 await self._end()
                 words = say("the supervisor did not answer within {s:g} s", s=ANSWER_WITHIN_S)
@@ -152,15 +150,12 @@ class StartingSupervisor:
         else:
             self._process.kill()
 
-    async def _give(self, plan: Plan) -> dict[str, Any]:
-        stdin = self._process.stdin
-        assert stdin is not None
-        await _write(stdin.fileno(), plan.to_json().encode() + b"\n")
-        return await self._answer()
-
-    async def _answer(self) -> dict[str, Any]:
+    async def _answer(self, plan: Plan) -> dict[str, Any]:
+        """Return what it says to a plan."""
         import asyncio
 
+        assert self._process.stdin is not None
+        await _write(self._process.stdin.fileno(), plan.to_json().encode() + b"\n")
         reader = asyncio.StreamReader()
         transport, _protocol = await asyncio.get_running_loop().connect_read_pipe(
             lambda: asyncio.StreamReaderProtocol(reader), self._process.stdout

@@ -11,6 +11,7 @@ import asyncio
 import time
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from launcher.consent import (
     ALLOWED_FOR_S,
@@ -22,29 +23,61 @@ from launcher.consent import (
     ConsentVerdict,
     Question,
 )
+from launcher.control.requests import BadRequestError, request
 from launcher.status import Severity
-from text.sentences import Words, say
+from launcher.wire import encode
+from text.packing import unpack_text
+from text.plain import plain
+from text.sentences import say
 
 MAX_AGENTS = 16
 MAX_QUESTIONS = 4
 """Most questions at once; a person cannot oversee more."""
-
-
 REFUSED_FOR_S = 5.0
 """How long nobody asks after a refusal; twice as long after each further one."""
 LONGEST_REFUSED_FOR_S = 320.0
+MAX_QUESTION_LINES = 6
+MAX_SENTENCE_BYTES = 4000
+"""Most bytes of a sentence of a question, or of a line for the log, packed."""
+LONGEST_NAME = 80
 
 
-class TooManyError(Exception):
-    """There are too many agents, or too many questions."""
-
-
-class TooSoonError(Exception):
+class TooSoonError(BadRequestError):
     """A person has just refused; `.wait_s` says for how long they are left alone."""
 
     def __init__(self, wait_s: float) -> None:
-        super().__init__(wait_s)
+        seconds = max(wait_s, 1.0)
+        words = say("the person has just refused: nothing is asked for another {seconds:.0f} s", seconds=seconds)
+        super().__init__(words, "too_soon")
         self.wait_s = wait_s
+
+
+def _too_many() -> BadRequestError:
+    return BadRequestError(say("too many agents ask at once"), "too_many")
+
+
+def _bounded(packed: object) -> object:
+    if not packed or len(encode({"": packed})) > MAX_SENTENCE_BYTES:
+        raise ValueError(f"expected a sentence of at most {MAX_SENTENCE_BYTES} bytes")
+    return packed
+
+
+def _short(name: object) -> object:
+    if isinstance(name, str) and len(name) > LONGEST_NAME:
+        raise ValueError(f"expected at most {LONGEST_NAME} characters")
+    return name
+
+
+def _few(lines: object) -> object:
+    if isinstance(lines, list) and not 1 <= len(lines) <= MAX_QUESTION_LINES:
+        raise ValueError(f"expected 1 to {MAX_QUESTION_LINES} lines")
+    return lines
+
+
+Short = Annotated[str, _short]
+"""The name of an agent, or what distinguishes those of one connection."""
+BoundedSentence = Annotated[str, _bounded, unpack_text]
+Lines = Annotated[tuple[BoundedSentence, ...], _few]
 
 
 @dataclass
@@ -68,12 +101,12 @@ class _Pending:
 
 
 class ConsentDesk:
-    """Knows agents, questions and allowances; `client` is the connection that speaks."""
+    """Knows agents, questions and allowances; serves their requests. `client` is the connection that speaks."""
 
     def __init__(
         self,
         changed: Callable[[], None],
-        told: Callable[[Severity, Words], None],
+        told: Callable[[Severity, str], None],
         asked_for_s: float = ASKED_FOR_S,
         allowed_for_s: float = ALLOWED_FOR_S,
         refused_for_s: float = REFUSED_FOR_S,
@@ -100,20 +133,19 @@ class ConsentDesk:
 
     # Screens.
 
+    @request
     def attend(self, client: Hashable) -> None:
         """Note that a person can answer at this screen."""
+        if any(who is client for who, _key in self._known):
+            raise BadRequestError(say("an agent cannot answer its own questions"))
         self._screens.add(client)
 
-    def attends(self, client: Hashable) -> bool:
-        return client in self._screens
-
-    def knows(self, client: Hashable, key: str | None = None) -> bool:
-        """Whether an agent has joined from there: that of this key, or any."""
-        return any(who is client and key in (None, name) for who, name in self._known)
-
-    def answer(self, number: int, answer: ConsentAnswer) -> bool:
+    @request
+    def answer(self, client: Hashable, question: int, answer: ConsentAnswer) -> bool:
         """Answer a question; return False if it is no longer asked."""
-        pending = self._pending.get(number)
+        if client not in self._screens:
+            raise BadRequestError(say("only a screen that attends to agents may answer them"))
+        pending = self._pending.get(question)
         if pending is None or pending.answered.done():
             return False
         if answer is ConsentAnswer.REFUSE:
@@ -126,7 +158,8 @@ class ConsentDesk:
         pending.answered.set_result(ConsentVerdict.ALLOWED)
         return True
 
-    def end_all(self) -> None:
+    @request
+    def end_consent(self) -> None:
         """End every question and every allowance: an emergency stop, or a person's wish."""
         allowed = [known for known in self._known.values() if known.allowed_until_s]
         for known in allowed:
@@ -138,16 +171,16 @@ class ConsentDesk:
 
     # Agents.
 
-    def join(self, client: Hashable, key: str, name: str, approval: Approval) -> None:
-        """Note that an agent is connected; `key` distinguishes those of one connection.
-
-        Raises:
-            TooManyError: if there are too many.
-        """
+    @request
+    def join(self, client: Hashable, key: Short, name: Short, approval: Approval) -> None:
+        """Note that an agent is connected; `key` distinguishes those of one connection."""
+        if client in self._screens:
+            raise BadRequestError(say("an agent cannot answer its own questions"))
         if (client, key) in self._known:
             return
         if len(self._known) >= MAX_AGENTS and not self._forget_one(client):
-            raise TooManyError
+            raise _too_many()
+        name = plain(name)
         self._known[client, key] = _Known(Agent(name, approval))
         self._told(Severity.DEBUG, say("agent “{name}” is connected", name=name))
         if approval is Approval.ALWAYS:
@@ -164,14 +197,16 @@ class ConsentDesk:
                 return True
         return False
 
-    async def ask(self, client: Hashable, key: str, lines: tuple[str, ...], *, anew: bool = False) -> ConsentVerdict:
+    @request
+    async def ask(self, client: Hashable, key: Short, lines: Lines, anew: bool = False) -> ConsentVerdict:
         """Ask a person, unless they have allowed it for a time; `anew`: even then.
 
         Raises:
-            TooManyError: if too much is asked at once.
             TooSoonError: if a person has refused a moment ago.
         """
-        known = self._known[client, key]
+        known = self._known.get((client, key))
+        if known is None:
+            raise BadRequestError(say("an agent has to join before it asks"))
         if known.allowed_until_s > time.monotonic() and not anew:
             return ConsentVerdict.ALLOWED_BEFORE
         if not self._screens:
@@ -180,7 +215,7 @@ class ConsentDesk:
         if wait_s > 0:
             raise TooSoonError(wait_s)
         if len(self._pending) >= MAX_QUESTIONS:
-            raise TooManyError
+            raise _too_many()
         self._last += 1
         question = Question(self._last, known.agent.name, lines, time.time() + self._asked_for_s)
         pending = self._pending[question.number] = _Pending(question, client, key)
@@ -193,7 +228,13 @@ class ConsentDesk:
             self._pending.pop(question.number, None)
             self._changed()
 
-    def withdraw(self, client: Hashable, key: str | None = None) -> None:
+    @request
+    def tell(self, severity: Severity, words: BoundedSentence) -> None:
+        """Add a line about an agent to the log."""
+        self._told(severity, words)
+
+    @request
+    def withdraw(self, client: Hashable, key: Short | None = None) -> None:
         """End the questions of a connection, or of one of its agents."""
         self._end_questions(lambda one: one.client is client and key in (None, one.key), ConsentVerdict.ENDED)
 
@@ -203,7 +244,7 @@ class ConsentDesk:
             self._screens.discard(client)
             if not self._screens:
                 self._end_questions(lambda _pending: True, ConsentVerdict.SCREEN_GONE)
-                self.end_all()
+                self.end_consent()
         self.withdraw(client)
         mine = [key for key in self._known if key[0] is client]
         for key in mine:

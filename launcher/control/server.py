@@ -8,13 +8,13 @@ import os
 import socket
 import struct
 import time
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from launcher.control.consent import ConsentDesk, TooManyError, TooSoonError
-from launcher.control.requests import AgentRequests, BadRequestError, requests_of, serve
+from launcher.control.consent import ConsentDesk
+from launcher.control.requests import BadRequestError, requests_of, serve
 from launcher.errors import StillRunningError, UnknownNodeError
 from launcher.events import (
     AgentsEvent,
@@ -40,47 +40,6 @@ MAX_CHARS = 64 * 1024
 """Most characters of one node's lines in one batch, not counting its first line."""
 
 
-class ClientFeed:
-    """The updates for one client."""
-
-    def __init__(self, rings: Mapping[str, LogRing]) -> None:
-        """Begin with lines that are written from now on; older ones are history."""
-        self._rings = rings
-        self._seen = {name: ring.last_seq for name, ring in rings.items()}
-        self._changed: dict[str, None] = {}
-
-    def status_changed(self, names: Iterable[str]) -> None:
-        """Mark the statuses of these nodes to be sent."""
-        self._changed.update(dict.fromkeys(names))
-
-    def status_news(self, statuses: Callable[[], Mapping[str, NodeStatus]]) -> dict[str, Any] | None:
-        """Return the message about changed nodes, None if there are none."""
-        if not self._changed:
-            return None
-        now = statuses()
-        nodes = tuple(now[name] for name in self._changed)
-        self._changed.clear()
-        return pack_event(StatusEvent(nodes))
-
-    def log_news(self) -> dict[str, Any] | None:
-        """Return the next batch of lines, None if there are none."""
-        news = []
-        skipped = {}
-        for name, ring in self._rings.items():
-            missed = ring.last_seq - self._seen[name]
-            if missed:
-                lines = ring.after(self._seen[name], MAX_LINES, MAX_CHARS)
-                self._seen[name] = ring.last_seq
-                news.append(lines)
-                if missed > len(lines):
-                    skipped[name] = missed - len(lines)
-        if not news:
-            return None
-        # A node's own lines always stay in order, whatever their time stamps say.
-        batch = heapq.merge(*news, key=lambda line: line.time_s)
-        return pack_event(LogEvent(tuple(batch), skipped))
-
-
 LOG_PERIOD_S = 0.1
 STATUS_DELAY_S = 0.01
 """Changes within this time are sent together."""
@@ -89,15 +48,8 @@ MAX_UNSENT_BYTES = 1 << 20
 STUCK_S = 30.0
 """A client that has read nothing for this long is disconnected."""
 MAX_CLIENTS = 64
-MAX_SILENT = 128
-"""Most connections without a greeting yet; beyond that the oldest are closed.
-
-A client that greets at once is heard before this many others can connect: asyncio accepts 100 at a
-time.
-"""
 GREETED_WITHIN_S = 10.0
-MAX_REQUESTS = 100
-"""Most requests of one client that are served at the same time."""
+"""A connection that says nothing makes room for others after this time."""
 
 
 class ControlServer:
@@ -105,18 +57,17 @@ class ControlServer:
 
     def __init__(
         self,
-        serves: object,
         hello: Callable[[], Hello],
         rings: Callable[[], Mapping[str, LogRing]],
         tell_of_agents: Callable[[Severity, str], None],
     ) -> None:
-        """`serves` has the requests about nodes, see `requests_of`; `hello` says how everything is.
+        """`hello` says how everything is, `rings` has every node's log.
 
-        `rings` has every node's log; `tell_of_agents` adds a line about an agent to the log.
+        `tell_of_agents` adds a line about an agent to the log.
         """
         self._hello, self._rings = hello, rings
         self.consent = ConsentDesk(self._agents_changed, tell_of_agents)
-        self._requests = requests_of(serves, AgentRequests(self.consent, tell_of_agents))
+        self._requests = requests_of(self.consent)
         self._clients: dict[Client, None] = {}
         """In the order in which they connected."""
         self._server: asyncio.AbstractServer | None = None
@@ -124,6 +75,10 @@ class ControlServer:
         self._status_timer: asyncio.TimerHandle | None = None
         self._log_timer: asyncio.TimerHandle | None = None
         self._last_log = float("-inf")
+
+    def take_requests_for(self, *servers: object) -> None:
+        """Let these serve requests, too, see `requests_of`."""
+        self._requests |= requests_of(*servers)
 
     async def serve(self, listening: socket.socket) -> None:
         """Accept clients on this socket only from now on; existing connections stay."""
@@ -134,7 +89,7 @@ class ControlServer:
     def status_changed(self, name: str) -> None:
         """Note that a node's status has changed."""
         for client in self._clients:
-            client.feed.status_changed([name])
+            client.changed[name] = None
         if self._status_timer is None and self._clients:
             self._status_timer = self._loop.call_later(STATUS_DELAY_S, self._tell_statuses)
 
@@ -165,7 +120,7 @@ class ControlServer:
         """Tell every client how the session ended, and disconnect."""
         if self._server is not None:
             self._server.close()
-        self.consent.end_all()
+        self.consent.end_consent()
         self._tell_statuses()
         self._tell_lines()
         for client in tuple(self._clients):
@@ -179,7 +134,7 @@ class ControlServer:
         self._status_timer = None
         for client in self._clients:
             if client.takes_more():
-                client.tell(client.feed.status_news(self._statuses))
+                client.tell(client.status_news(self._statuses))
 
     def _tell_lines(self) -> None:
         self._log_timer = None
@@ -187,8 +142,8 @@ class ControlServer:
         behind = False
         for client in tuple(self._clients):
             if client.takes_more():
-                client.tell(client.feed.status_news(self._statuses))
-                client.tell(client.feed.log_news())
+                client.tell(client.status_news(self._statuses))
+                client.tell(client.log_news())
             else:
                 behind = True
         if behind:
@@ -198,10 +153,10 @@ class ControlServer:
         pid, uid = _peer(writer)
         # What a learner's file does in a grading is not what its teacher asks for.
         strange = uid != os.getuid() or _is_elsewhere(pid)
-        if strange or not self._has_room():
+        if strange or len(self._clients) >= MAX_CLIENTS:
             writer.close()
             return
-        client = Client(writer, ClientFeed(self._rings()))
+        client = Client(writer, self._rings())
         client.task = asyncio.current_task()
         client.pid = pid
         client.tell(pack(replace(self._hello(), agents=self.consent.state)))
@@ -214,16 +169,6 @@ class ControlServer:
             self._clients.pop(client, None)
             self.consent.leave(client)
             writer.close()
-
-    def _has_room(self) -> bool:
-        """Whether one more client may connect; connections without a greeting make way."""
-        silent = [client for client in self._clients if not client.greeted]
-        if len(self._clients) - len(silent) >= MAX_CLIENTS:
-            return False
-        for client in silent[: max(len(silent) - MAX_SILENT + 1, 0)]:
-            del self._clients[client]
-            client.writer.transport.abort()
-        return True
 
     async def _converse(self, client: Client, reader: asyncio.StreamReader) -> None:
         while True:
@@ -260,33 +205,29 @@ class ControlServer:
         except StillRunningError as error:
             client.refuse(request_id, "still_running", pack_text(error.args[0]))
         except BadRequestError as error:
-            client.refuse(request_id, "bad_request", str(error))
-        except TooSoonError as error:
-            words = say(
-                "the person has just refused: nothing is asked for another {seconds:.0f} s",
-                seconds=max(error.wait_s, 1.0),
-            )
-            client.refuse(request_id, "too_soon", words)
-        except TooManyError:
-            client.refuse(request_id, "too_many", say("too many agents ask at once"))
+            client.refuse(request_id, error.kind, str(error))
         except Exception as error:
             # A bug of ours, traced in the supervisor's log; the client must not wait for ever.
             client.refuse(request_id, "fault", f"{type(error).__name__}: {error}")
             raise
         else:
             # A client that reads the reply must already have the resulting status.
-            client.tell(client.feed.status_news(self._statuses))
-            client.tell({"reply": request_id, "result": result})
+            client.tell(client.status_news(self._statuses))
+            client.tell({"reply": request_id, "result": pack(result)})
 
 
 class Client:
     """One connection."""
 
     def __init__(
-        self, writer: asyncio.StreamWriter, feed: ClientFeed, now: Callable[[], float] = time.monotonic
+        self, writer: asyncio.StreamWriter, rings: Mapping[str, LogRing], now: Callable[[], float] = time.monotonic
     ) -> None:
+        """Begin with lines that are written from now on; older ones are history."""
         self.writer = writer
-        self.feed = feed
+        self.changed: dict[str, None] = {}
+        """The nodes whose statuses are to be sent."""
+        self._rings = rings
+        self._seen = {name: ring.last_seq for name, ring in rings.items()}
         self.task: asyncio.Task[Any] | None = None
         self.pid = 0
         """The client's process number."""
@@ -295,11 +236,35 @@ class Client:
         self._now = now
         self._behind_since: float | None = None
 
+    def status_news(self, statuses: Callable[[], Mapping[str, NodeStatus]]) -> dict[str, Any] | None:
+        """Return the message about changed nodes, None if there are none."""
+        if not self.changed:
+            return None
+        now = statuses()
+        nodes = tuple(now[name] for name in self.changed)
+        self.changed.clear()
+        return pack_event(StatusEvent(nodes))
+
+    def log_news(self) -> dict[str, Any] | None:
+        """Return the next batch of lines, None if there are none."""
+        news = []
+        skipped = {}
+        for name, ring in self._rings.items():
+            missed = ring.last_seq - self._seen[name]
+            if missed:
+                lines = ring.after(self._seen[name], MAX_LINES, MAX_CHARS)
+                self._seen[name] = ring.last_seq
+                news.append(lines)
+                if missed > len(lines):
+                    skipped[name] = missed - len(lines)
+        if not news:
+            return None
+        # A node's own lines always stay in order, whatever their time stamps say.
+        batch = heapq.merge(*news, key=lambda line: line.time_s)
+        return pack_event(LogEvent(tuple(batch), skipped))
+
     def begin(self, serving: Coroutine[Any, Any, None]) -> None:
         """Serve a request alongside the others: stopping a node takes time."""
-        if len(self._requests) >= MAX_REQUESTS:
-            serving.close()
-            raise BadRequestError(say("too many requests at once"))
         task = asyncio.create_task(serving)
         self._requests.add(task)
         task.add_done_callback(self._requests.discard)

@@ -61,17 +61,12 @@ def choose_domain(asked: int | None, profile: int | None, environ: Mapping[str, 
     return default_domain()
 
 
-def ros_environment(base: Mapping[str, str], domain: int, discovery: Discovery) -> dict[str, str]:
-    """Return `base` with the variables from which rcl takes its domain and peers.
-
-    The deprecated ROS_LOCALHOST_ONLY would take precedence, so it is removed. Fast DDS settings
-    that the user has chosen stay.
-    """
-    environ = dict(base)
-    environ.pop("ROS_LOCALHOST_ONLY", None)
-    environ.pop("ROS_STATIC_PEERS", None)
-    environ["ROS_DOMAIN_ID"] = str(domain)
-    environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET" if discovery == "subnet" else "LOCALHOST"
-    if not isinstance(discovery, str):
-        environ["ROS_STATIC_PEERS"] = ";".join(discovery)
-    return environ
+def settings_of_domain(domain: int, discovery: Discovery) -> dict[str, str | None]:
+    """Return the variables from which rcl takes its domain and peers; None unsets."""
+    return {
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET" if discovery == "subnet" else "LOCALHOST",
+        "ROS_STATIC_PEERS": None if isinstance(discovery, str) else ";".join(discovery),
+        # Deprecated, and would take precedence.
+        "ROS_LOCALHOST_ONLY": None,
+    }

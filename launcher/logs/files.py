@@ -12,7 +12,7 @@ import json
 import os
 import queue
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -153,41 +153,30 @@ def prune_runs(folder: Path, keep: int = KEPT_RUNS) -> None:
         keep: how many to keep besides the current runs.
     """
     with contextlib.suppress(OSError):
-        runs = [entry.name for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False)]
-        over = sorted(run for run in runs if _is_marked(folder / run) and not supervisor_runs(run))
+        runs = sorted(entry.name for entry in os.scandir(folder) if entry.is_dir(follow_symlinks=False))
+        over = [folder / run for run in runs if not supervisor_runs(run) and _logs_of(folder / run) is not None]
         for run in over[: max(len(over) - keep, 0)]:
-            _remove(folder / run)
-
-
-def _is_marked(run: Path) -> bool:
-    with contextlib.suppress(OSError):
-        descriptor = open_own_folder(run)
-        try:
-            return _marked_logs(run.name, descriptor) is not None
-        finally:
-            os.close(descriptor)
-    return False
-
-
-def _remove(run: Path) -> None:
-    with contextlib.suppress(OSError):
-        descriptor = open_own_folder(run)
-        try:
-            logs = _marked_logs(run.name, descriptor)
-            if logs is not None:
-                olds = ["", *(f".{number}" for number in range(1, MAX_OLD_FILES + 1))]
-                names = [f"{log}.log{old}" for log in logs for old in olds]
+            olds = ["", *(f".{number}" for number in range(1, MAX_OLD_FILES + 1))]
+            names = [f"{log}.log{old}" for log in _logs_of(run) or () for old in olds]
+            with contextlib.suppress(OSError), _opened(run) as descriptor:
                 remove_files(run, descriptor, [*names, AUDIT_FILE, MARK])
-        finally:
-            os.close(descriptor)
 
 
-def _marked_logs(run_id: str, folder: int) -> list[str] | None:
-    """Return the names of the logs that this run wrote here; None if there is no mark."""
-    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+def _logs_of(run: Path) -> list[str] | None:
+    """Return the names of the logs that a run wrote to its folder; None if there is no mark."""
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError), _opened(run) as folder:
         descriptor = open_file(MARK, os.O_RDONLY | os.O_NONBLOCK, folder)
         with os.fdopen(descriptor, encoding="utf-8") as file:
             mark = read_json(file.read(_LONGEST_MARK))
-        if mark["run"] == run_id:
+        if mark["run"] == run.name:
             return [log for log in map(str, mark["logs"]) if "/" not in log]
     return None
+
+
+@contextlib.contextmanager
+def _opened(run: Path) -> Iterator[int]:
+    descriptor = open_own_folder(run)
+    try:
+        yield descriptor
+    finally:
+        os.close(descriptor)

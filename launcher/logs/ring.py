@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from typing import NamedTuple
 
-from launcher.status import LogLine, pack_line, unpack_line
+from launcher.status import LogLine
 from text.nested import read_json
 
 BLOCK_LINES = 250
@@ -24,48 +24,6 @@ class _Block(NamedTuple):
     packed: bytes
 
 
-class KeptLines:
-    """Lines in order of arrival; the oldest can be dropped."""
-
-    def __init__(self) -> None:
-        self._blocks: deque[_Block] = deque()
-        self._newest: deque[LogLine] = deque()
-        self._count = 0
-
-    def __len__(self) -> int:
-        return self._count
-
-    def __reversed__(self) -> Iterator[LogLine]:
-        older = (reversed(_unpacked(block)) for block in reversed(self._blocks))
-        return chain(reversed(self._newest), chain.from_iterable(older))
-
-    def append(self, line: LogLine) -> None:
-        self._newest.append(line)
-        self._count += 1
-        if len(self._newest) >= 2 * BLOCK_LINES:
-            self._blocks.append(_packed([self._newest.popleft() for _ in range(BLOCK_LINES)]))
-
-    def drop_oldest(self) -> tuple[int, int]:
-        """Drop the oldest line, or block of lines; return how many, and their characters."""
-        if self._blocks:
-            block = self._blocks.popleft()
-            dropped = block.lines, block.characters
-        else:
-            dropped = 1, len(self._newest.popleft().text)
-        self._count -= dropped[0]
-        return dropped
-
-
-def _packed(lines: list[LogLine]) -> _Block:
-    rows = json.dumps([pack_line(line) for line in lines])
-    characters = sum(len(line.text) for line in lines)
-    return _Block(len(lines), characters, zlib.compress(rows.encode(), FASTEST))
-
-
-def _unpacked(block: _Block) -> list[LogLine]:
-    return [unpack_line(row) for row in read_json(zlib.decompress(block.packed))]
-
-
 MAX_LINES = 5000
 MAX_BYTES = 4 << 20
 LINE_COST = 300
@@ -78,27 +36,42 @@ class LogRing:
 
     def __init__(self, max_lines: int = MAX_LINES, max_bytes: int = MAX_BYTES) -> None:
         """`max_bytes` limits, approximately, the memory that the lines take."""
-        self._lines = KeptLines()
-        self._max_lines = max_lines
-        self._max_bytes = max_bytes
-        self._bytes = 0
+        self._blocks: deque[_Block] = deque()
+        self._newest: deque[LogLine] = deque()
+        self._max_lines, self._max_bytes = max_lines, max_bytes
+        self._count = self._bytes = 0
         self.last_seq = 0
 
     def __len__(self) -> int:
-        return len(self._lines)
+        return self._count
+
+    def __reversed__(self) -> Iterator[LogLine]:
+        older = (reversed(_unpacked(block)) for block in reversed(self._blocks))
+        return chain(reversed(self._newest), chain.from_iterable(older))
 
     def append(self, line: LogLine) -> None:
         """Add the next line; the oldest ones are dropped when there is no room."""
-        self._lines.append(line)
+        self._newest.append(line)
         self.last_seq = line.seq
+        self._count += 1
         self._bytes += len(line.text) + LINE_COST
-        while len(self._lines) > self._max_lines or self._bytes > self._max_bytes:
-            lines, characters = self._lines.drop_oldest()
-            self._bytes -= characters + lines * LINE_COST
+        if len(self._newest) >= 2 * BLOCK_LINES:
+            self._blocks.append(_packed([self._newest.popleft() for _ in range(BLOCK_LINES)]))
+        while self._count > self._max_lines or self._bytes > self._max_bytes:
+            self._drop_oldest()
+
+    def _drop_oldest(self) -> None:
+        """Drop the oldest line, or block of lines."""
+        if self._blocks:
+            lines, characters, _packed = self._blocks.popleft()
+        else:
+            lines, characters = 1, len(self._newest.popleft().text)
+        self._count -= lines
+        self._bytes -= characters + lines * LINE_COST
 
     def newest(self, limit: int) -> list[LogLine]:
         """Return at most `limit` lines, oldest first."""
-        lines = list(islice(reversed(self._lines), max(limit, 0)))
+        lines = list(islice(reversed(self), max(limit, 0)))
         lines.reverse()
         return lines
 
@@ -106,10 +79,20 @@ class LogRing:
         """Return the newest lines that came after `seq`, bounded in number and length."""
         lines: list[LogLine] = []
         chars = 0
-        for line in islice(reversed(self._lines), min(limit, self.last_seq - seq)):
+        for line in islice(reversed(self), min(limit, self.last_seq - seq)):
             chars += len(line.text)
             if lines and chars > max_chars:
                 break
             lines.append(line)
         lines.reverse()
         return lines
+
+
+def _packed(lines: list[LogLine]) -> _Block:
+    rows = json.dumps([line.packed() for line in lines])
+    characters = sum(len(line.text) for line in lines)
+    return _Block(len(lines), characters, zlib.compress(rows.encode(), FASTEST))
+
+
+def _unpacked(block: _Block) -> list[LogLine]:
+    return [LogLine.unpacked(row) for row in read_json(zlib.decompress(block.packed))]

@@ -5,11 +5,9 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+from collections.abc import Coroutine, Iterator
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING, TypeVar
-
-if TYPE_CHECKING:
-    from collections.abc import Coroutine, Iterator
+from typing import TypeVar
 
 _T = TypeVar("_T")
 

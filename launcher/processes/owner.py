@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import os
 import pwd
-from typing import TYPE_CHECKING
 
 from launcher.processes.table import read_environment, stat_fields
 from launcher.status import Who
-from text.sentences import say
-
-if TYPE_CHECKING:
-    from text.sentences import Words
+from text.sentences import Words, say
 
 _PTS_MAJORS = range(136, 144)
 _VT_MAJOR = 4

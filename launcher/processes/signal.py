@@ -1,4 +1,4 @@
-"""Sending a signal to exactly one process, never to another that has reused its pid."""
+"""Sending a signal to exactly one process, never to another that has reused its pid; ending all that are left."""
 
 from __future__ import annotations
 
@@ -6,15 +6,21 @@ import contextlib
 import errno
 import os
 import signal
-from typing import TYPE_CHECKING, Protocol
+import time
+from collections.abc import Callable, Iterator, Sequence
+from typing import Protocol
 
-from launcher.processes.table import read_process
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from launcher.processes.table import Process, read_process
 
 _NO_PIDFD = (errno.ENOSYS, errno.EPERM)
 """Errors of a kernel before 5.3, or of a container that does not allow the call."""
+
+
+KILLED_AFTER_S = 0.7
+"""From SIGINT to SIGKILL: together with the search, less than the promised 2 s."""
+LEFT_AFTER_S = 10.0
+"""After this time a process that SIGKILL does not end is left to the kernel."""
+LOOK_EVERY_S = 0.05
 
 
 class Identified(Protocol):
@@ -63,3 +69,20 @@ def _held(pid: int) -> Iterator[int | None]:
         yield descriptor
     finally:
         os.close(descriptor)
+
+
+def end_all(find: Callable[[], Sequence[Process]]) -> None:
+    """End all processes that `find` returns, looking again until it returns none."""
+    began_s = time.monotonic()
+    told: set[int] = set()
+    while left := find():
+        elapsed_s = time.monotonic() - began_s
+        if elapsed_s > LEFT_AFTER_S:
+            return
+        for process in left:
+            if elapsed_s >= KILLED_AFTER_S:
+                send(process, signal.SIGKILL)
+            elif process.pid not in told:
+                send(process, signal.SIGINT, signal.SIGCONT)
+        told.update(process.pid for process in left)
+        time.sleep(LOOK_EVERY_S)

@@ -4,16 +4,27 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
 
-from launcher.processes.abandoned import KILLED_AFTER_S
+from launcher.processes.signal import KILLED_AFTER_S, send
+from launcher.processes.table import Process
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
 
-    from launcher.clock import Clock
-    from launcher.processes.table import Process
+class Clock:
+    """The machine's monotonic clock, with a way to wait; a test that need not wait has another."""
+
+    def now(self) -> float:
+        return time.monotonic()
+
+    async def wait(self, event: asyncio.Event, within_s: float) -> bool:
+        """Wait for `event`, at most `within_s`; return whether it was set."""
+        try:
+            await asyncio.wait_for(event.wait(), within_s)
+        except asyncio.TimeoutError:
+            return False
+        return True
 
 
 @dataclass(frozen=True)
@@ -44,33 +55,25 @@ Looks and not seconds, which also pass while this process itself is starved.
 """
 
 
-class Target(Protocol):
-    """The processes of one node."""
-
-    def left(self) -> Sequence[Process]:
-        """Return those that are alive."""
-
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal."""
-
-
 class StagedStop:
     """One stop in progress."""
 
     def __init__(
         self,
-        target: Target,
+        left: Callable[[], Sequence[Process]],
         clock: Clock,
         on_holdup: Callable[[Sequence[Process], signal.Signals], None],
         pace: StopTimeouts = PATIENT,
         on_stuck: Callable[[Sequence[Process]], None] = lambda _left: None,
     ) -> None:
-        """`on_holdup` is called with what is left and the last signal, whenever these change.
+        """`left` returns the processes that are alive.
+
+        `on_holdup` is called with what is left and the last signal, whenever these change.
 
         `on_stuck` is called once, with what has not ended 5 s after SIGKILL.
         """
         self._on_stuck = on_stuck
-        self._target = target
+        self._left = left
         self._clock = clock
         self._on_holdup = on_holdup
         self._pace = pace
@@ -92,7 +95,7 @@ class StagedStop:
         shown: object = None
         killed_looks = 0
         while True:
-            left = self._target.left()
+            left = self._left()
             if not left:
                 return
             elapsed = self._clock.now() - began
@@ -100,7 +103,8 @@ class StagedStop:
             for process in left:
                 if told.get(process.pid, -1) < stage or STAGES[stage] == signal.SIGKILL:
                     told[process.pid] = stage
-                    self._target.signal(process, STAGES[stage])
+                    # Woken if it is suspended, so that it handles it.
+                    send(process, STAGES[stage], signal.SIGCONT)
             view = (tuple(process.pid for process in left), stage)
             if elapsed >= _SPEAK_AFTER_S and view != shown:
                 shown = view
@@ -112,7 +116,9 @@ class StagedStop:
             self._wake.clear()
 
 
-async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Process]:
+async def end_all(
+    find: Callable[[], Sequence[Process]], clock: Clock, within_s: float, pace: StopTimeouts = QUICK
+) -> Sequence[Process]:
     """Stop all processes in a hurry, new ones too; return those that outlive `within_s`.
 
     A scan may miss a process that is just being forked, so the last two must find none.
@@ -120,8 +126,8 @@ async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Pro
 
     async def end() -> None:
         while True:
-            await StagedStop(target, clock, _say_nothing, QUICK).run()
-            if not target.left():
+            await StagedStop(find, clock, _say_nothing, pace).run()
+            if not find():
                 return
 
     ending = asyncio.create_task(end())
@@ -130,7 +136,7 @@ async def end_all(target: Target, clock: Clock, within_s: float) -> Sequence[Pro
         ending.result()
         return ()
     ending.cancel()
-    return target.left()
+    return find()
 
 
 def _say_nothing(left: Sequence[Process], number: signal.Signals) -> None:

@@ -9,13 +9,10 @@ from __future__ import annotations
 import contextlib
 import os
 import time
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from text.run_path import OWN_RUN_DIR, RUN_ID
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
 
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
@@ -186,8 +183,4 @@ def command_line(pid: int) -> str:
 
 def boot_time_s() -> float:
     """Return when the machine was booted, in unix time, to the second."""
-    with open("/proc/stat", "rb") as file:  # noqa: PTH123
-        for line in file:
-            if line.startswith(b"btime "):
-                return float(line.split()[1])
-    raise RuntimeError("/proc/stat has no btime")
+    return round(time.time() - time.clock_gettime(time.CLOCK_BOOTTIME))

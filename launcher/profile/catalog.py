@@ -4,19 +4,14 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, UsageError
+from launcher.errors import LauncherError, ProfileError, ProfileNotFoundError, ProfileProblem, UsageError
 from launcher.profile.defaults import FOLDERS_OWN, SHIPPED
 from text.sentences import say
 from text.suggestions import near
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from launcher.errors import ProfileProblem
 
 ENDINGS = (".yaml", ".yml")
 LESSON = re.compile(r"0*([0-9]+[a-z]?)(?![0-9a-z])")

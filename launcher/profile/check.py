@@ -6,6 +6,7 @@ import os
 import pkgutil
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from typing import Any
@@ -175,33 +176,15 @@ def check_needs(nodes: Mapping[str, Node], everybody: Sequence[str], problems: P
                 problems.at(where, say("there is no node {name!r}", name=other), did_you_mean(other, everybody))
             elif other in nodes and nodes[other].optional:
                 problems.at(where, say("{name} is optional, so nothing can need it", name=other))
-    for cycle in _cycles({name: node.needs for name, node in nodes.items()}):
-        message = say("nodes need each other in a cycle: {cycle}", cycle=" -> ".join([*cycle, cycle[0]]))
+    try:
+        TopologicalSorter({name: node.needs for name, node in nodes.items()}).prepare()
+    except CycleError as error:
+        # Each of these is needed by the next; it is told from its first node in the file.
+        *cycle, _first = reversed(error.args[1])
+        first = cycle.index(min(cycle, key=list(nodes).index))
+        cycle = [*cycle[first:], *cycle[:first], cycle[first]]
+        message = say("nodes need each other in a cycle: {cycle}", cycle=" -> ".join(cycle))
         problems.at(("nodes", cycle[0], "needs"), message, say("remove one of the needs"))
-
-
-def _cycles(needs: Mapping[str, tuple[str, ...]]) -> list[list[str]]:
-    """Return cycles, each once, from its first node in the file; not all of an entangled group."""
-    order = {name: position for position, name in enumerate(needs)}
-    done: set[str] = set()
-    cycles: list[list[str]] = []
-    for start in needs:
-        path: list[str] = []
-        branches = [iter([start])]
-        while branches:
-            name = next(branches[-1], None)
-            if name is None:
-                branches.pop()
-                if path:
-                    done.add(path.pop())
-            elif name in path:
-                cycle = path[path.index(name) :]
-                first = cycle.index(min(cycle, key=order.__getitem__))
-                cycles.append(cycle[first:] + cycle[:first])
-            elif name in needs and name not in done:
-                path.append(name)
-                branches.append(iter(needs[name]))
-    return cycles
 
 
 def check_steps(profile: Profile, nodes: Collection[str], problems: Problems) -> None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from launcher.profile.reading import Problems, read_value, replaced
@@ -48,28 +49,27 @@ def with_devices(
         problems: collects what is wrong
         ports: lists the serial ports; None leaves `auto` as it is
     """
-    settings: dict[str, Scalar] = {}
+    fill = _Filler({}, places, problems)
     devices = find(tree, ("devices",))
     if isinstance(devices, Branch):
-        branch = _Filler({}, places, problems).branch(devices, ("devices",))
-        for device, entry in branch.entries.items():
+        devices = fill.tree(devices, ("devices",))
+        assert isinstance(devices, Branch)
+        for device, entry in devices.entries.items():
             if isinstance(entry.value, Branch):
                 own = _settings(device, entry.value, hardware, environ, problems)
-                branch = replaced(branch, (device,), own)
+                devices = replaced(devices, (device,), own)
         if ports is not None and hardware == "real":
-            branch = _found(branch, used_devices(tree, hardware), ports, problems)
-        tree = replaced(tree, ("devices",), branch)
-        settings = {
+            devices = _found(devices, used_devices(tree, hardware), ports, problems)
+        tree = replaced(tree, ("devices",), devices)
+        fill.settings = {
             f"{device}.{name}": entry.value
-            for device, each in branch.entries.items()
+            for device, each in devices.entries.items()
             if isinstance(each.value, Branch)
             for name, entry in each.value.entries.items()
             if isinstance(entry.value, Scalar)
         }
-    filler = _Filler(settings, places, problems)
     for name, key, part in _referring(tree):
-        where = ("nodes", name, key)
-        tree = replaced(tree, where, filler.tree(part, where))
+        tree = replaced(tree, ("nodes", name, key), fill.tree(part, ("nodes", name, key)))
     return tree
 
 
@@ -189,48 +189,37 @@ def _found(devices: Branch, used: set[str], ports: Callable[[], Sequence[SerialP
     return devices
 
 
+@dataclass
 class _Filler:
     """Fills in values; an unknown name in `${}` is left as it is."""
 
-    def __init__(self, settings: Mapping[str, Scalar], places: Mapping[str, str], problems: Problems) -> None:
-        """`settings`: {"pico.port": ...}; `places`: {"run_dir": ...}."""
-        self._settings, self._places, self._problems = settings, places, problems
-
-    def branch(self, branch: Branch, where: Where) -> Branch:
-        """Return a branch with everything filled in."""
-        filled = {
-            key: MappingEntry(entry.key_place, self.tree(entry.value, (*where, key)))
-            for key, entry in branch.entries.items()
-        }
-        return Branch(filled, branch.place)
+    settings: Mapping[str, Scalar]
+    """{"pico.port": ...}"""
+    places: Mapping[str, str]
+    """{"run_dir": ...}"""
+    problems: Problems
 
     def tree(self, tree: Tree, where: Where) -> Tree:
+        """Return it with everything filled in."""
         if isinstance(tree, Branch):
-            return self.branch(tree, where)
+            entries = tree.entries.items()
+            filled = {key: MappingEntry(e.key_place, self.tree(e.value, (*where, key))) for key, e in entries}
+            return Branch(filled, tree.place)
         if isinstance(tree, Listing):
             items = (self.tree(item, (*where, index)) for index, item in enumerate(tree.items))
             return Listing(tuple(items), tree.place)
-        if not isinstance(tree.value, str) or "${" not in tree.value:
-            return tree
-        return self._text(tree, where)
+        return self._scalar(tree, where) if isinstance(tree.value, str) and "${" in tree.value else tree
 
-    def _text(self, scalar: Scalar, where: Where) -> Scalar:
-        text = PLACE.sub(lambda match: self._places.get(match[1], match[0]), scalar.text)
+    def _scalar(self, scalar: Scalar, where: Where) -> Scalar:
+        text = PLACE.sub(lambda match: self.places.get(match[1], match[0]), scalar.text)
         for name in DEVICE.findall(text):
-            if name not in self._settings:
-                self._unknown(name, scalar, where)
+            if name not in self.settings:
+                known = say("known: {keys}", keys=", ".join(self.settings)) if self.settings else ""
+                hint = did_you_mean(name, self.settings) or known
+                self.problems.add(scalar.place, where, say("there is no device setting {name!r}", name=name), hint)
                 return scalar
-        whole = DEVICE.fullmatch(text)
-        if whole:
-            found = self._settings[whole[1]]
+        if whole := DEVICE.fullmatch(text):
+            found = self.settings[whole[1]]
             return Scalar(found.value, found.text, scalar.place)
-        if text == scalar.text and not DEVICE.search(text):
-            return scalar
-        filled = DEVICE.sub(lambda match: self._settings[match[1]].text, text)
-        return Scalar(filled, filled, scalar.place)
-
-    def _unknown(self, name: str, scalar: Scalar, where: Where) -> None:
-        message = say("there is no device setting {name!r}", name=name)
-        known = say("known: {keys}", keys=", ".join(self._settings))
-        hint = did_you_mean(name, self._settings) or known
-        self._problems.add(scalar.place, where, message, hint if self._settings else "")
+        filled = DEVICE.sub(lambda match: self.settings[match[1]].text, text)
+        return scalar if filled == scalar.text else Scalar(filled, filled, scalar.place)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -139,11 +140,11 @@ def _resolved(node: Node, running: Mapping[str, Node], folder: Path, problems: P
     if node.ready is None and node.run is not None and node.lifecycle is None:
         changes["ready"] = Ready(node=node.name)
     elif node.ready is not None and node.ready.lifecycle is not None and node.ready.node is None:
-        changes["ready"] = node.ready.model_copy(update={"node": node.name})
+        changes["ready"] = replace(node.ready, node=node.name)
     words = node.exec or ()
     if node.file and words and node.cwd is None and os.path.isfile(folder / words[1]):  # noqa: PTH113
         changes["exec"] = (words[0], str(folder / words[1]), *words[2:])
-    return node.model_copy(update=changes)
+    return replace(node, **changes)
 
 
 def _with_overrides(
@@ -170,7 +171,7 @@ def _with_overrides(
             if value is not None:
                 one = Branch({param: MappingEntry(place, value)}, place)
                 params = {**result[name].params, **flatten(one, (name,), problems)}
-                result[name] = result[name].model_copy(update={"params": params})
+                result[name] = replace(result[name], params=params)
     return result
 
 

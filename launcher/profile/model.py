@@ -14,12 +14,14 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from launcher.consent import DEFAULT_RULES as RULES
+from launcher.consent import AgentRules
 from launcher.domain.domain import LAST_DOMAIN, default_domain
 from launcher.errors import ProfileProblem
-from launcher.profile.node import AsText, Document, Given, Joined, Node, RosName, Texts, refuse
+from launcher.parts import AsText, Given, Joined, Texts, refuse
+from launcher.profile.node import Node
 from launcher.profile.panels import Panel
 from launcher.profile.serial_choice import KINDS
+from launcher.profile.steps.checks import Document
 from launcher.profile.steps.model import StepDocument, Values
 from text.sentences import say
 
@@ -65,29 +67,6 @@ _DEVICE: dict[str, Any] = {
 }
 
 
-class AgentsDocument(Document):
-    """What agents that speak to `deck mcp` may do, whatever a person allows them."""
-
-    max_speed_m_s: float = Field(
-        default=RULES.max_speed_m_s, ge=0, le=10, description="Fastest speed of a proposal, m/s."
-    )
-    max_distance_m: float = Field(
-        default=RULES.max_distance_m, ge=0, le=100, description="Longest way of one proposal, m."
-    )
-    max_total_m: float = Field(
-        default=RULES.max_total_m,
-        ge=0,
-        le=1000,
-        description="Longest way within five minutes of all that nobody was asked about, m.",
-    )
-    publish: tuple[RosName, ...] = Field(
-        default=(),
-        strict=False,
-        description="Topics that agents may publish on; one that moves the robot stays refused.",
-    )
-    call: tuple[RosName, ...] = Field(default=(), strict=False, description="Services that agents may call.")
-
-
 class Profile(Document):
     """A profile of Deck: nodes started, supervised and shown together."""
 
@@ -119,9 +98,8 @@ class Profile(Document):
     panels: tuple[Panel, ...] = Field(
         default=(), strict=False, description="Panels that the deck shows beside nodes and logs."
     )
-    agents: Annotated[AgentsDocument, Joined()] = Field(
-        default_factory=lambda: AgentsDocument.model_validate({}),
-        description="Limits for agents, and what else they may do.",
+    agents: Annotated[AgentRules, Joined()] = Field(
+        default_factory=AgentRules, description="Limits for agents, and what else they may do."
     )
     values: Values = Field(
         default={}, description="Values that differ from run to run, used in checks as `${near_m}`."

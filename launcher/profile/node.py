@@ -1,10 +1,9 @@
 """A node, from the profile that describes it to the supervisor that runs it.
 
-What the other parts of the format share with it is here as well.
 Each field is declared here alone: how a value is read (`AsText`), what a path is relative to
 (`PathFromProfile`), how `extends` treats it (`Joined`), and whether the loader gives it (`Given`).
-Editors show the descriptions beside a key. These models cover single values and types; checks across
-fields are in `launcher.profile.check`.
+Editors show the descriptions beside a key. Single values and types are checked here; what concerns several
+fields in `launcher.profile.check`.
 """
 
 from __future__ import annotations
@@ -12,20 +11,26 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, TypeVar
-
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError, PydanticOmit
+from typing import Annotated, Any, Literal
 
 from launcher import node_program
-from text.ros_names import ROS_NAME
-from text.sentences import Words, say
+from launcher.parts import (
+    AsText,
+    Checked,
+    Given,
+    Joined,
+    Part,
+    PathFromProfile,
+    RosName,
+    TypeName,
+    key,
+    refuse,
+    ros_name,
+)
+from text.sentences import say
 from text.yaml_scalars import in_quotes
 from text.yaml_scalars import written as single
-
-M = TypeVar("M")
 
 Lifecycle = Literal["inactive", "active"]
 Restart = Literal["never", "on-failure", "always"]
@@ -37,7 +42,6 @@ NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 LONGEST_NODE_NAME = 255
 MODULE = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*")
 ENV_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9]*")
 _DRIVERS = frozenset(
     f"nodes.{name}"
     for name in ("ai_brain", "ai_driver", "chassis", "drive_to_point", "electronic_differential", "llm_parser")
@@ -47,61 +51,9 @@ _COLD_PREFIXES = ("PYTHON", "LD_", "RMW_", "OPENBLAS_", "OMP_", "MALLOC_", "LTTN
 """Variables read when an interpreter or a library is loaded: after a fork it is too late."""
 
 
-class AsText:
-    """Every scalar inside is taken as text, exactly as written: `0.10`, `yes`, `9`."""
-
-
-class Joined:
-    """`extends` merges the mapping key by key; a field without this mark replaces the other's."""
-
-
-class Given:
-    """Not written in a profile: the loader gives it, or the supervisor."""
-
-    def __get_pydantic_json_schema__(self, *_: object) -> None:
-        """Keep it out of the schema."""
-        raise PydanticOmit
-
-
-@dataclass(frozen=True)
-class PathFromProfile:
-    """A path relative to the profile that contains it."""
-
-    is_meant: Callable[[str], bool] = bool
-    """Distinguishes a path from other text that is allowed here."""
-
-
-def marked(model: type[BaseModel], mark: type[M]) -> dict[str, M]:
-    """Return the fields with a mark of this type, by name."""
-    fields = model.model_fields.items()
-    return {name: found for name, field in fields for found in field.metadata if isinstance(found, mark)}
-
-
-def refuse(words: Words) -> PydanticCustomError:
-    """Return the error with which a validator of this model rejects a value."""
-    return PydanticCustomError("deck", "{words}", {"words": words})
-
-
 def is_file(run: str) -> bool:
     """Whether `run` means a file, not a module."""
     return run.startswith(("./", "../", "/"))
-
-
-def _texts(value: object) -> object:
-    return {"en": value} if isinstance(value, str) else value
-
-
-def _ros_name(value: object) -> object:
-    """Refuse text that is not a ROS name; everything else is refused by its type."""
-    if isinstance(value, str) and not ROS_NAME.fullmatch(value):
-        raise refuse(say("{value!r} is not a ROS name; write it as /sensor/sonar_front", value=value))
-    return value
-
-
-def _type_name(value: object) -> object:
-    if isinstance(value, str) and not TYPE_NAME.fullmatch(value):
-        raise refuse(say("{value!r} is not a message type; write it as std_msgs/msg/Float32", value=value))
-    return value
 
 
 def _module(value: object) -> object:
@@ -117,7 +69,7 @@ def _module(value: object) -> object:
 
 def _ros_names(value: object) -> object:
     for old in value if isinstance(value, dict) else ():
-        _ros_name(old)
+        ros_name(old)
     return value
 
 
@@ -141,20 +93,8 @@ def _command(value: object) -> object:
 
 
 _SCALARS: dict[str, Any] = {"type": ["string", "number", "boolean"]}
-_TEXTS_SCHEMA: dict[str, Any] = {
-    "type": "object",
-    "properties": {"en": {"type": "string"}, "ru": {"type": "string"}},
-    "additionalProperties": {"type": "string"},
-}
-Texts = Annotated[
-    dict[str, str], BeforeValidator(_texts), WithJsonSchema({"anyOf": [{"type": "string"}, _TEXTS_SCHEMA]})
-]
-RosName = Annotated[str, BeforeValidator(_ros_name)]
-TypeName = Annotated[str, BeforeValidator(_type_name)]
-ModuleOrFile = Annotated[str, BeforeValidator(_module)]
-Command = Annotated[
-    tuple[str, ...], BeforeValidator(_command), WithJsonSchema({"type": "array", "items": _SCALARS, "minItems": 1})
-]
+ModuleOrFile = Annotated[str, Checked(_module)]
+Command = Annotated[tuple[str, ...], Checked(_command, {"type": "array", "items": _SCALARS, "minItems": 1})]
 
 
 def written(value: Any) -> str:  # noqa: ANN401 - a parameter
@@ -167,95 +107,75 @@ def written(value: Any) -> str:  # noqa: ANN401 - a parameter
     return in_quotes(value) if isinstance(value, str) else single(value)
 
 
-class Document(BaseModel):
-    """Base of all parts of a profile: no unknown keys, no silent conversions."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, ser_json_inf_nan="constants")
-
-
-class Ready(Document):
+@dataclass(frozen=True)
+class Ready(Part):
     """When a node counts as ready: exactly one of topic, service, node and lifecycle."""
 
-    topic: RosName | None = Field(default=None, description="Ready when somebody publishes this topic.")
-    type: TypeName | None = Field(
-        default=None, description="With topic: only publishers of this type count, `std_msgs/msg/Float32`."
-    )
-    rate: float | None = Field(
-        default=None,
+    topic: RosName | None = key(None, "Ready when somebody publishes this topic.")
+    type: TypeName | None = key(None, "With topic: only publishers of this type count, `std_msgs/msg/Float32`.")
+    rate: float | None = key(
+        None,
+        "With topic: messages must arrive this many times a second; nine tenths of it are enough.",
         gt=0,
         le=1000,
-        description="With topic: messages must arrive this many times a second; nine tenths of it are enough.",
     )
-    service: RosName | None = Field(default=None, description="Ready when this service is offered.")
-    node: RosName | None = Field(default=None, description="Ready when this node is in the ROS graph.")
-    lifecycle: Lifecycle | None = Field(
-        default=None,
-        description="Ready when the node, or the one that `node` names, is in this state of its"
+    service: RosName | None = key(None, "Ready when this service is offered.")
+    node: RosName | None = key(None, "Ready when this node is in the ROS graph.")
+    lifecycle: Lifecycle | None = key(
+        None,
+        "Ready when the node, or the one that `node` names, is in this state of its"
         " lifecycle; somebody else has to bring it there.",
     )
-    within: float = Field(default=READY_WITHIN_S, gt=0, le=3600, description="Seconds it may take.")
+    within: float = key(READY_WITHIN_S, "Seconds it may take.", gt=0, le=3600)
     goes: Annotated[bool, Given()] = False
     """With lifecycle: whether the node is to be brought to that state, not only waited for."""
 
 
-class Node(Document):
+@dataclass(frozen=True)
+class Node(Part):
     """One node: a process, and what it needs."""
 
     name: Annotated[str, Given()] = ""
     """Its key in the profile; for a `run` node also its name in the ROS graph."""
-    run: Annotated[ModuleOrFile | None, PathFromProfile(is_file)] = Field(
-        default=None,
-        description="Python module to run as a ROS node, named like its key: `nodes.hello`; or a"
+    run: Annotated[ModuleOrFile | None, PathFromProfile(is_file)] = key(
+        None,
+        "Python module to run as a ROS node, named like its key: `nodes.hello`; or a"
         " file of your own, relative to the profile: `./my_sonar.py`.",
     )
-    exec: Annotated[Command | None, AsText()] = Field(
-        default=None,
-        strict=False,
-        description="Any command instead: `[ros2, run, package, program]`; `python` and `python3`"
+    exec: Annotated[Command | None, AsText()] = key(
+        None,
+        "Any command instead: `[ros2, run, package, program]`; `python` and `python3`"
         " are the ones that know rclpy: `[python, my_sonar.py]`.",
+        strict=False,
     )
-    params: Annotated[dict[str, Any], Joined()] = Field(default={}, description="ROS parameters, nested as you like.")
+    params: Annotated[dict[str, Any], Joined()] = key({}, "ROS parameters, nested as you like.")
     """Once loaded, flattened: `{"limits.front": 0.5}`."""
-    remap: Annotated[dict[str, RosName], BeforeValidator(_ros_names), AsText(), Joined()] = Field(
-        default={}, description="Topic and service names to remap: `{/drive: /drive_safe}`."
+    remap: Annotated[dict[str, RosName], Checked(_ros_names), AsText(), Joined()] = key(
+        {}, "Topic and service names to remap: `{/drive: /drive_safe}`."
     )
     env: Annotated[
-        dict[str, str],
-        BeforeValidator(_variables),
-        WithJsonSchema({"type": "object", "additionalProperties": _SCALARS}),
-        AsText(),
-        Joined(),
-    ] = Field(default={}, description="Environment variables on top of the launcher's own.")
-    needs: tuple[str, ...] = Field(
-        default=(),
+        dict[str, str], Checked(_variables, {"type": "object", "additionalProperties": _SCALARS}), AsText(), Joined()
+    ] = key({}, "Environment variables on top of the launcher's own.")
+    needs: tuple[str, ...] = key(
+        (),
+        "Nodes that must be ready before this one is started. Nodes excluded by `when` are not waited for.",
         strict=False,
-        description="Nodes that must be ready before this one is started. Nodes excluded by `when`"
-        " are not waited for.",
     )
     """Once loaded, only those that run."""
-    ready: Ready | None = Field(
-        default=None, description="Default: `run` nodes are ready when seen in the ROS graph."
-    )
-    lifecycle: Lifecycle | None = Field(
-        default=None,
-        description="A node with a lifecycle is configured, and with `active` activated, once it"
+    ready: Ready | None = key(None, "Default: `run` nodes are ready when seen in the ROS graph.")
+    lifecycle: Lifecycle | None = key(
+        None,
+        "A node with a lifecycle is configured, and with `active` activated, once it"
         " runs; it is not ready before. A transition that fails is a failure of the node.",
     )
-    restart: Restart = Field(
-        default="never", description="Whether to restart it when it ends; the delay doubles, up to 30 s."
+    restart: Restart = key("never", "Whether to restart it when it ends; the delay doubles, up to 30 s.")
+    when: str | None = key(None, 'Run it only if true: `hardware == "mock"`, `hardware in ["real"]`.')
+    optional: bool = key(
+        False,
+        "The lesson can do without it: that its program is not installed, or ends, is reported but is not a failure.",
     )
-    when: str | None = Field(
-        default=None, description='Run it only if true: `hardware == "mock"`, `hardware in ["real"]`.'
-    )
-    optional: bool = Field(
-        default=False,
-        description="The lesson can do without it: that its program is not installed, or ends, is"
-        " reported but is not a failure.",
-    )
-    warm: bool = Field(default=True, description="Fork it from a process that has already imported rclpy.")
-    cwd: Annotated[str | None, PathFromProfile()] = Field(
-        default=None, description="Working directory, relative to the profile's file."
-    )
+    warm: bool = key(True, "Fork it from a process that has already imported rclpy.")
+    cwd: Annotated[str | None, PathFromProfile()] = key(None, "Working directory, relative to the profile's file.")
     """Absolute; by default the folder in which the launcher was started."""
 
     @property

@@ -9,19 +9,7 @@ from __future__ import annotations
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from robot.topics import (
-    BRAIN_STATE,
-    CAMERA,
-    HEAD_STATE,
-    JOINT_STATES,
-    MAP,
-    MICROPHONE,
-    ODOMETRY,
-    SONAR_FRONT,
-    SONAR_REAR,
-    SPEAKER,
-    WHEEL_COMMANDS,
-)
+from robot import topics as of
 from text.i18n import N_
 
 
@@ -35,13 +23,13 @@ class PanelEntry(NamedTuple):
 
 
 PANELS: dict[str, PanelEntry] = {
-    "sonar": PanelEntry(N_("sonar"), (SONAR_FRONT, SONAR_REAR)),
-    "wheels": PanelEntry(N_("wheels"), (WHEEL_COMMANDS, JOINT_STATES)),
-    "map": PanelEntry(N_("map"), (ODOMETRY, MAP)),
-    "camera": PanelEntry(N_("camera"), (CAMERA,)),
-    "head": PanelEntry(N_("head"), (HEAD_STATE,)),
-    "voice": PanelEntry(N_("voice"), (MICROPHONE, SPEAKER)),
-    "brain": PanelEntry(N_("brain"), (BRAIN_STATE,)),
+    "sonar": PanelEntry(N_("sonar"), (of.SONAR_FRONT, of.SONAR_REAR)),
+    "wheels": PanelEntry(N_("wheels"), (of.WHEEL_COMMANDS, of.JOINT_STATES)),
+    "map": PanelEntry(N_("map"), (of.ODOMETRY, of.MAP)),
+    "camera": PanelEntry(N_("camera"), (of.CAMERA,)),
+    "head": PanelEntry(N_("head"), (of.HEAD_STATE,)),
+    "voice": PanelEntry(N_("voice"), (of.MICROPHONE, of.SPEAKER)),
+    "brain": PanelEntry(N_("brain"), (of.BRAIN_STATE,)),
     "composer": PanelEntry(N_("composer")),
 }
 """In the order in which they are shown."""

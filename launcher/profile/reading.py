@@ -16,9 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from launcher.errors import ProfileProblem
+from launcher.parts import Joined, PathFromProfile, marked
 from launcher.profile.defaults import SHIPPED, shown
 from launcher.profile.model import Profile
-from launcher.profile.node import Joined, Node, PathFromProfile, marked
+from launcher.profile.node import Node
 from text.os_words import os_reason
 from text.sentences import say
 from text.suggestions import did_you_mean

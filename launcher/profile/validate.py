@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
-from launcher.profile.model import AgentsDocument, Profile
-from launcher.profile.node import AsText, Document, Given, Node, Ready, marked
+from launcher.consent import AgentRules
+from launcher.parts import AsText, Given, marked
+from launcher.profile.model import Profile
+from launcher.profile.node import Node, Ready
 from launcher.profile.reading import Problems
 from launcher.profile.steps.checks import KINDS, kind_of
 from launcher.profile.steps.model import StepDocument, ValueDocument
@@ -18,7 +21,7 @@ from text.sentences import say
 from text.suggestions import did_you_mean
 from text.yaml_tree import Branch, Listing, Tree, Where, empty, find, plain
 
-D = TypeVar("D", bound="Document")
+D = TypeVar("D")
 
 WANTED = {
     "string_type": say("text"),
@@ -27,9 +30,12 @@ WANTED = {
     "bool_type": say("true or false"),
     "tuple_type": say("a list"),
     "dict_type": say("keys and values"),
+    "dataclass_type": say("keys and values"),
     "model_type": say("keys and values"),
 }
 _DECIMAL_COMMA = re.compile(r"(-?[0-9]+),([0-9]+)")
+READERS: dict[type, TypeAdapter[Any]] = {kind: TypeAdapter(kind) for kind in (Profile, Node)}
+UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 MISSING = {"missing": say("`{key}` is missing"), "too_short": say("`{key}` is empty")}
 LIMITS = {
     "greater_than": (say("more than {limit}"), "gt"),
@@ -55,11 +61,11 @@ def validate(problems: Problems) -> tuple[Profile | None, dict[str, Node]]:
         )
         node = _validated(Node, said, ("nodes", name), problems)
         if node is not None:
-            valid[name] = node.model_copy(update={"name": name})
+            valid[name] = replace(node, name=name)
     return profile, valid
 
 
-def _data(tree: Tree, model: type[Document]) -> dict[str, Any]:
+def _data(tree: Tree, model: type) -> dict[str, Any]:
     """Return plain data, omitting keys without a value, with text wherever only text makes sense.
 
     In `exec: [--x, 0.10]` the value is the text 0.10 as written, and in `lesson: 9` the text 9.
@@ -80,18 +86,22 @@ def _as_text(tree: Tree | None) -> Any:  # noqa: ANN401 - whatever stands there
     return tree.text if tree is not None and not empty(tree) else None
 
 
-def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D | None:  # noqa: ANN401 - any YAML
+def _validated(kind: type[D], data: Any, where: Where, problems: Problems) -> D | None:  # noqa: ANN401 - any YAML
     """Return the document; if there are problems, without the keys that cause them.
 
     So later checks can report other problems in the same run.
     """
+    model: Any = kind
     for key in marked(model, Given) if isinstance(data, dict) else ():
         if data.pop(key, None) is not None:
             problems.at((*where, key), *_unknown((*where, key), problems.tree), key=True)
+    found: D
     try:
-        return model.model_validate(data)
+        found = READERS[model].validate_python(data)
     except ValidationError as error:
         faults = error.errors(include_url=False)
+    else:
+        return found
     for details in faults:
         if not _only_follows(details):
             _add(details, where, problems)
@@ -99,7 +109,8 @@ def _validated(model: type[D], data: Any, where: Where, problems: Problems) -> D
         return None
     at_fault = {details["loc"][0] for details in faults if details["loc"]}
     with suppress(ValidationError):
-        return model.model_validate({k: v for k, v in data.items() if k not in at_fault})
+        found = READERS[model].validate_python({k: v for k, v in data.items() if k not in at_fault})
+        return found
     return None
 
 
@@ -110,7 +121,7 @@ def _only_follows(details: ErrorDetails) -> bool:
 
 def _add(details: ErrorDetails, above: Where, problems: Problems) -> None:
     where = (*above, *_without_kinds(details["loc"]))
-    problems.at(where, *_words(details, where, problems.tree), key=details["type"] == "extra_forbidden")
+    problems.at(where, *_words(details, where, problems.tree), key=details["type"] in UNKNOWN)
 
 
 def _without_kinds(where: Where) -> Where:
@@ -142,7 +153,7 @@ def _words(details: ErrorDetails, where: Where, tree: Branch) -> tuple[str, str]
 def _words_of_choice(details: ErrorDetails, where: Where, tree: Branch) -> tuple[str, str]:
     """Return what is wrong with a key or a value that must be one of several."""
     kind, found = details["type"], details["input"]
-    if kind == "extra_forbidden":
+    if kind in UNKNOWN:
         return _unknown(where, tree)
     if kind == "union_tag_not_found":
         return say("no kind of check is named here"), _likely_kind(found)
@@ -183,12 +194,13 @@ def _likely_kind(check: object) -> str:
 def _unknown(where: Where, tree: Branch) -> tuple[str, str]:
     model = _model(where[:-1], tree)
     given = marked(model, Given)
-    known = [field.alias or name for name, field in model.model_fields.items() if name not in given]
+    fields = getattr(model, "model_fields" if issubclass(model, BaseModel) else "__dataclass_fields__")
+    known = [name for name in fields if name not in given]
     hint = did_you_mean(str(where[-1]), known) or say("known: {keys}", keys=", ".join(known))
     return say("unknown key"), hint
 
 
-def _model(where: Where, tree: Branch) -> type[BaseModel]:
+def _model(where: Where, tree: Branch) -> type:
     """Return the model of the mapping at this place."""
     above = where[0] if where else ""
     if above == "nodes":
@@ -199,7 +211,7 @@ def _model(where: Where, tree: Branch) -> type[BaseModel]:
     return _BY_KEY.get(above, Profile)
 
 
-_BY_KEY: dict[str | int, type[BaseModel]] = {"agents": AgentsDocument, "values": ValueDocument, "steps": StepDocument}
+_BY_KEY: dict[str | int, type] = {"agents": AgentRules, "values": ValueDocument, "steps": StepDocument}
 
 
 def described(value: object) -> str:

@@ -13,18 +13,17 @@ import fcntl
 import json
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from launcher.consent import AgentRules
 from launcher.control.socket import SOCKET_NAME
 from launcher.private_files import make_folder, open_file, open_own_folder, remove_files
 from launcher.processes.table import SUPERVISOR_MARK, own_number, process_numbers, read_marks, read_process
 from launcher.run_id import is_of_supervisor, supervisor_of, supervisor_runs
-from launcher.status import SessionInfo, Who
+from launcher.status import SessionInfo
+from launcher.wire import pack, unpack
 from text.nested import read_json
 from text.run_path import MODEL_USAGE, OWN_RUN_DIR
 
@@ -41,8 +40,6 @@ class RunRecord:
     folder: Path
     session: SessionInfo
     nodes: tuple[str, ...]
-    processes: Mapping[str, tuple[int, int]]
-    """Node to the number and the start, in ticks, of its process."""
     drives: bool = False
     """Whether any of the nodes commands the wheels."""
 
@@ -57,12 +54,8 @@ class RunRecord:
 
     def write(self) -> None:
         make_folder(self.folder)
-        fields = {
-            "session": asdict(self.session),
-            "nodes": self.nodes,
-            "processes": self.processes,
-            "drives": self.drives,
-        }
+        fields = pack(self)
+        del fields["folder"]
         draft = self.folder / _DRAFT_NAME
         descriptor = open_file(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         with os.fdopen(descriptor, "w", encoding="utf-8") as file:
@@ -88,30 +81,11 @@ def read_records(run_dir: Path) -> list[RunRecord]:
 
 def read_record(folder: Path) -> RunRecord | None:
     """Return the record of the run in this folder; None if it is missing or broken."""
-    with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
-        fields = read_json((folder / RECORD_NAME).read_text(encoding="utf-8"))
-        processes = {str(node): (int(pid), int(started)) for node, (pid, started) in fields["processes"].items()}
-        session = _session(fields["session"])
-        drives = bool(fields.get("drives"))
-        return RunRecord(folder, session, tuple(fields["nodes"]), processes, drives)
+    with contextlib.suppress(OSError, ValueError, TypeError):
+        written = read_json((folder / RECORD_NAME).read_text(encoding="utf-8"))
+        found: RunRecord = unpack(RunRecord, {**written, "folder": folder})
+        return found
     return None
-
-
-def _session(fields: dict[str, Any]) -> SessionInfo:
-    """Return the session that `dataclasses.asdict` was given.
-
-    Not by pydantic, for which a stop from a shell would have to wait.
-    """
-    discovery, rules = fields["discovery"], fields.get("agents", {})
-    lists = {name: tuple(rules[name]) for name in ("publish", "call") if name in rules}
-    read = {
-        "panels": tuple(fields["panels"]),
-        "discovery": discovery if isinstance(discovery, str) else tuple(discovery),
-        "started_by": Who(**fields["started_by"]),
-        # A session that an older Deck has started has none.
-        "agents": AgentRules(**{**rules, **lists}),
-    }
-    return SessionInfo(**{**fields, **read})
 
 
 @contextlib.contextmanager

@@ -10,25 +10,20 @@ from __future__ import annotations
 
 import asyncio
 import os
+import socket
 import tempfile
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from launcher.control.socket import SOCKET_NAME, listen
 from launcher.errors import RunDirError
+from launcher.processes.prctl import show_mark
 from launcher.processes.table import SUPERVISOR_MARK
-from launcher.processes.title import show_mark
 from launcher.rundir import own_folder
-from launcher.runs.record import RECORD_NAME
+from launcher.runs.record import RECORD_NAME, RunRecord
 from text.sentences import Words, say
-
-if TYPE_CHECKING:
-    import socket
-    from collections.abc import Awaitable, Callable, Mapping
-
-    from launcher.runs.record import RunRecord
 
 LOOK_EVERY_S = 1.0
 
@@ -58,12 +53,6 @@ class RunFolder:
         server = listen(self.record.folder)
         self._socket = os.stat(SOCKET_NAME, dir_fd=self._descriptor)
         return server
-
-    def note(self, processes: Mapping[str, tuple[int, int]]) -> None:
-        """Record the processes of the nodes, for cleaning up after a sudden end."""
-        self.record = replace(self.record, processes=dict(processes))
-        if self._is_in_place():
-            self.record.write()
 
     async def keep(self, serve: Callable[[socket.socket], Awaitable[None]], tell: Callable[[Words], None]) -> None:
         """Create it again whenever it disappears; `serve` gets each new socket, `tell` messages."""
@@ -105,28 +94,15 @@ class RunFolder:
         return False
 
     def _made_again(self) -> socket.socket:
-        """Create folder, record and socket; on failure leave nothing that looks like a session."""
-        before, held = self.record.folder, os.dup(self._descriptor)
-        try:
-            self._settle_where_possible()
-            if not os.path.samestat(os.fstat(held), os.fstat(self._descriptor)):
-                _empty(held)
-                if before != self._proper:
-                    with suppress(OSError):
-                        before.rmdir()
-            return self.listen()
-        finally:
-            os.close(held)
-
-    def _settle_where_possible(self) -> None:
+        """Create folder, record and socket, in a place of last resort if necessary."""
         try:
             own_folder(self.run_dir)
             self.record = replace(self.record, folder=self._proper)
             self.settle()
         except (OSError, RunDirError):
-            folder = Path(tempfile.mkdtemp(prefix="deck-"))
-            self.record = replace(self.record, folder=folder)
+            self.record = replace(self.record, folder=Path(tempfile.mkdtemp(prefix="deck-")))
             self.settle()
+        return self.listen()
 
     def _hold(self) -> None:
         """Hold the folder open, under the same descriptor number as the one before."""
@@ -138,9 +114,3 @@ class RunFolder:
         else:
             os.dup2(descriptor, self._descriptor, inheritable=False)
             os.close(descriptor)
-
-
-def _empty(folder: int) -> None:
-    for name in (RECORD_NAME, SOCKET_NAME):
-        with suppress(OSError):
-            os.unlink(name, dir_fd=folder)

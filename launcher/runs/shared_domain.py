@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,17 +12,13 @@ from launcher.domain.domain import LAST_SAFE_DOMAIN
 from launcher.errors import DomainTakenError
 from launcher.processes.owner import who_words
 from launcher.run_id import supervisor_of
-from launcher.runs.record import RunRecord, supervisors
+from launcher.runs.record import FoundSupervisor, RunRecord, supervisors
 from launcher.status import SessionInfo
 from text.run_path import OWN_RUN_DIR
-from text.sentences import say
+from text.sentences import Words, say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
     from launcher.profile.load import Profile
-    from launcher.runs.record import FoundSupervisor
-    from text.sentences import Words
 
 
 @dataclass(frozen=True)
@@ -76,7 +73,7 @@ def _unknown(supervisor: FoundSupervisor) -> RunRecord:
         domain=supervisor.domain,
         supervisor_pid=supervisor_of(supervisor.run_id),
     )
-    return RunRecord(supervisor.folder, session, (), {})
+    return RunRecord(supervisor.folder, session, ())
 
 
 def refuse_shared_domain(profile: Profile) -> None:

@@ -6,14 +6,11 @@ reported, and ended only on request.
 
 from __future__ import annotations
 
-import asyncio
 import os
-import signal
-import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from launcher.processes.signal import send
+from launcher.processes.stop import Clock, StopTimeouts, end_all
 from launcher.processes.table import (
     GUARDIAN_NAME,
     NODE_MARK,
@@ -32,28 +29,20 @@ from launcher.status import Stray
 from text.run_path import OWN_RUN_DIR
 
 _SAME_START_S = 1.5
-"""Tolerance: the kernel gives its boot time to the second, and it drifts with the clock."""
+"""Tolerance: the time of the boot is known to the second, and drifts with the clock."""
 INTERRUPT_S = 2.0
-"""From SIGINT to SIGKILL, and the longest wait after SIGKILL."""
+"""From SIGINT to SIGKILL, and the longest wait after that."""
 
 
-def find_strays(run_dir: Path) -> tuple[Stray, ...]:
+def find_strays() -> tuple[Stray, ...]:
     """Return the processes left over from runs whose supervisor is gone."""
-    recorded = {
-        key: (record.session.run_id, node)
-        for record in read_records(run_dir)
-        if not record.runs
-        for node, key in record.processes.items()
-    }
     booted = boot_time_s()
     strays = []
     table = {process.pid: process for process in processes()}
     for process in table.values():
         if process.zombie or _is_guarded(process, table):
             continue
-        run_id, node = recorded.get((process.pid, process.started_ticks), ("", ""))
-        if not run_id:
-            run_id, node = _marked(process)
+        run_id, node = _marked(process)
         if run_id:
             started_s = booted + process.started_ticks / TICKS_PER_S
             command = command_line(process.pid) or process.name
@@ -90,12 +79,8 @@ def _marked(process: Process) -> tuple[str, str]:
     return run_id, node
 
 
-def still_there(stray: Stray) -> bool:
-    """Whether exactly this process is alive, not another with the same number."""
-    return _found(stray) is not None
-
-
 def _found(stray: Stray) -> Process | None:
+    """Return exactly this process if it is alive, not another with the same number."""
     process = read_process(stray.pid)
     if process is None or process.zombie:
         return None
@@ -105,22 +90,13 @@ def _found(stray: Stray) -> Process | None:
     return process
 
 
-async def end_strays(strays: Iterable[Stray]) -> None:
+async def end_strays(strays: Sequence[Stray]) -> None:
     """End these processes: by SIGINT, and by SIGKILL those that remain."""
-    left = [stray for stray in strays if still_there(stray)]
-    for number in (signal.SIGINT, signal.SIGKILL):
-        _signal(left, number)
-        deadline = time.monotonic() + INTERRUPT_S
-        while left and time.monotonic() < deadline:
-            await asyncio.sleep(0.05)
-            left = [stray for stray in left if still_there(stray)]
 
+    def left() -> list[Process]:
+        return [process for process in map(_found, strays) if process is not None]
 
-def _signal(strays: Iterable[Stray], number: signal.Signals) -> None:
-    for stray in strays:
-        process = _found(stray)
-        if process is not None:
-            send(process, number)
+    await end_all(left, Clock(), 2 * INTERRUPT_S, StopTimeouts(INTERRUPT_S, 0.0))
 
 
 def forget_ended_runs(run_dir: Path, strays: Iterable[Stray]) -> None:

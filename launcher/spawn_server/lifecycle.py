@@ -12,13 +12,14 @@ import json
 import os
 import select
 import time
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from launcher.spawn_server.probe import hidden_node
 from text.nested import read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rclpy.client import Client
     from rclpy.executors import Executor
     from rclpy.node import Node
@@ -48,33 +49,16 @@ class _EndedError(Exception):
 
 def watch_lifecycle(argv: Sequence[str]) -> None:
     """Watch one node until stdin ends; `argv` is a JSON list: node, wanted state, whether to go."""
-    # Fast DDS prints its errors to stdout.
-    reports = os.dup(1)
-    os.dup2(2, 1)
-
-    import rclpy
     from rclpy.executors import SingleThreadedExecutor
-    from rclpy.signals import SignalHandlerOptions
 
     name, wanted, goes = read_json(argv[0])
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    # A leading underscore hides a node from the usual lists.
-    node = rclpy.create_node(
-        f"_deck_lifecycle_{os.getpid()}",
-        use_global_arguments=False,
-        enable_rosout=False,
-        start_parameter_services=False,
-    )
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    try:
-        _Managed(node, executor, f"/{name.lstrip('/')}", reports).follow(wanted, goes=goes)
-    except _EndedError:
-        pass
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.shutdown()
+    with hidden_node("deck_lifecycle") as (node, reports), suppress(_EndedError):
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        try:
+            _Managed(node, executor, f"/{name.lstrip('/')}", reports).follow(wanted, goes=goes)
+        finally:
+            executor.shutdown()
 
 
 class _Managed:

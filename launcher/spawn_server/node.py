@@ -9,19 +9,24 @@ import os
 import runpy  # noqa: F401 - imported ahead for all forked nodes
 import signal
 import sys
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from launcher import node_program
 from launcher.faults import CHECK_FIELDS
-from launcher.processes.prctl import die_with_parent, leave_libraries_alone_at_exit
+from launcher.processes.prctl import (
+    die_with_parent,
+    leave_libraries_alone_at_exit,
+    set_short_name,
+    show_mark,
+    show_title,
+)
 from launcher.processes.table import NODE_MARK
-from launcher.processes.title import show_mark, show_name, show_title
+from launcher.spawn_server import SpawnRequest
 from text.plain import plain
 
 if TYPE_CHECKING:
     from launcher.spawn_server.preload import Preload
-    from launcher.spawn_server.shared_modules import SharedModules
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
 NOT_EXECUTABLE = 126
@@ -29,76 +34,41 @@ NOT_FOUND = 127
 """The exit codes that a shell uses."""
 
 
-@dataclass(frozen=True)
-class ForkSpec:
-    """Everything a forked process needs to know to become its node."""
+def become(request: SpawnRequest, fds: Sequence[int], supervisor: int, preload: Preload) -> None:
+    """Run as the node until it ends; an exception in the node ends this process as usual.
 
-    kind: str
-    """`module`: run here, in the warm interpreter; `exec`: a program; `probe`: the graph probe;
-    `lifecycle`: watch one node's lifecycle."""
-    name: str
-    title: str
-    argv: tuple[str, ...]
-    """For `module`: the module or file with its arguments; for `exec`: the command line."""
-    env: dict[str, str | None]
-    """Changes to the server's environment; None unsets."""
-    cwd: str
-    fds: tuple[int, ...]
-    """The descriptors for stdout and stderr, or for stdin, stdout and stderr."""
-    supervisor: int
-    shared: SharedModules
-    """The project's own modules that have been imported."""
-
-    @classmethod
-    def from_request(cls, request: dict[str, Any], fds: list[int], supervisor: int, preload: Preload) -> ForkSpec:
-        """Read a request; if the imports have failed, modules are started cold."""
-        kind, argv = str(request["kind"]), tuple(map(str, request["argv"]))
-        if kind == "module" and preload.broken:
-            kind, argv = "exec", (sys.executable, node_program.__file__, *argv)
-        return cls(
-            kind=kind,
-            name=request["name"],
-            title=request["title"],
-            argv=argv,
-            env=dict(request["env"]),
-            cwd=request["cwd"],
-            fds=tuple(fds),
-            supervisor=supervisor,
-            shared=preload.shared,
-        )
-
-
-def become(spec: ForkSpec) -> None:
-    """Run as the node until it ends; an exception in the node ends this process as usual."""
+    `fds` are the descriptors for stdout and stderr, or for stdin, stdout and stderr.
+    """
     os.setsid()
-    if not die_with_parent(spec.supervisor):
+    if not die_with_parent(supervisor):
         os._exit(1)
     _reset_signals()
-    _take_descriptors(spec.fds)
-    _set_environment(spec)
+    _take_descriptors(fds)
+    _set_environment(request)
     try:
-        os.chdir(spec.cwd)
+        os.chdir(request.cwd)
     except OSError as problem:
-        _give_up(f"cannot enter {spec.cwd}: {problem.strerror}", NOT_EXECUTABLE)
-    if spec.kind == "exec":
-        _hear_signals()
-        _execute(spec)
-    show_title(spec.title)
-    show_name(spec.name)
-    show_mark(NODE_MARK, spec.name)
+        _give_up(f"cannot enter {request.cwd}: {problem.strerror}", NOT_EXECUTABLE)
+    if request.kind == "exec":
+        _execute(request.argv)
+    elif request.kind == "module" and preload.broken:
+        _execute((sys.executable, node_program.__file__, *request.argv))
+    show_title(request.title)
+    set_short_name(request.name)
+    show_mark(NODE_MARK, request.name)
     renew_streams()
-    if spec.kind == "probe":
-        _hear_signals()
+    if request.kind == "module":
+        _run_module(request.argv, preload)
+        return
+    _hear_signals()
+    if request.kind == "probe":
         from launcher.spawn_server.probe import probe
 
-        probe(spec.argv)
-    elif spec.kind == "lifecycle":
-        _hear_signals()
+        probe(request.argv)
+    else:
         from launcher.spawn_server.lifecycle import watch_lifecycle
 
-        watch_lifecycle(spec.argv)
-    else:
-        _run_module(spec.argv, spec.shared)
+        watch_lifecycle(request.argv)
 
 
 def _reset_signals() -> None:
@@ -114,16 +84,16 @@ def _hear_signals() -> None:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
-def _set_environment(spec: ForkSpec) -> None:
-    os.environ[NODE_MARK] = spec.name
-    for name, value in spec.env.items():
+def _set_environment(request: SpawnRequest) -> None:
+    os.environ[NODE_MARK] = request.name
+    for name, value in request.env.items():
         if value is None:
             os.environ.pop(name, None)
         else:
             os.environ[name] = value
 
 
-def _take_descriptors(fds: tuple[int, ...]) -> None:
+def _take_descriptors(fds: Sequence[int]) -> None:
     if len(fds) == 2:
         fds = (os.open(os.devnull, os.O_RDONLY), *fds)
     for target, fd in enumerate(fds):
@@ -134,13 +104,14 @@ def _take_descriptors(fds: tuple[int, ...]) -> None:
                 os.close(int(entry))
 
 
-def _execute(spec: ForkSpec) -> None:
+def _execute(argv: tuple[str, ...]) -> None:
+    _hear_signals()
     try:
-        os.execvp(spec.argv[0], spec.argv)
+        os.execvp(argv[0], argv)
     except FileNotFoundError:
-        _give_up(f"command not found: {spec.argv[0]}", NOT_FOUND)
+        _give_up(f"command not found: {argv[0]}", NOT_FOUND)
     except OSError as problem:
-        _give_up(f"cannot execute {spec.argv[0]}: {problem.strerror}", NOT_EXECUTABLE)
+        _give_up(f"cannot execute {argv[0]}: {problem.strerror}", NOT_EXECUTABLE)
 
 
 def _give_up(word: str, code: int) -> None:
@@ -168,14 +139,14 @@ def check_fields(wanted: str) -> None:
             module.ros_python_check_fields = wanted  # type: ignore[attr-defined]
 
 
-def _run_module(argv: tuple[str, ...], shared: SharedModules) -> None:
+def _run_module(argv: tuple[str, ...], preload: Preload) -> None:
     """Run as the program that `launcher.node_program` would start in a new interpreter."""
     # Python's defaults at startup, which `_reset_signals` has undone.
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     node_program.prepare(argv)
     importlib.invalidate_caches()
-    shared.renew(argv[0])
+    preload.renew(argv[0])
     check_fields(os.environ.get(CHECK_FIELDS, ""))
     _hear_signals()
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:

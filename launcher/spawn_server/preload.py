@@ -1,6 +1,10 @@
 """The imports that the spawn server makes before it forks nodes, so that they need not.
 
 It creates no context, node or thread: a fork copies only the thread that forks.
+
+The package of Deck's nodes lists its modules that nodes share: in `__preload__` those that nearly every node needs,
+in `__preload_idle__` those that some need, imported when there is time. Whoever works on Deck may edit them at any
+time, so a node that is forked later imports anew what has changed.
 """
 
 from __future__ import annotations
@@ -11,15 +15,14 @@ import gc
 import importlib
 import inspect
 import os
+import sys
 import warnings
+from collections.abc import Iterator
 from itertools import chain
-from typing import TYPE_CHECKING
 
-from launcher.spawn_server.shared_modules import SharedModules
+from launcher.node_program import INSTALLATION, is_ours
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
+NODES = "nodes"
 _FIRST = ("rclpy", "rclpy.node", "rclpy.executors", "rclpy.action", "rclpy.signals")
 _INTERFACES = (
     "rcl_interfaces.msg",
@@ -46,17 +49,15 @@ IDLE_AFTER_S = 0.3
 class Preload:
     """The imports, one step at a time, so that the server can handle requests in between."""
 
-    def __init__(self, packages: Iterable[str] = (), *, cold: bool) -> None:
-        """`packages`: import their shared modules too; `cold`: import nothing."""
-        self.done = cold
-        self.broken = "" if not cold else "cold"
+    def __init__(self, *, cold: bool) -> None:
+        """`cold`: import nothing."""
+        self.done = self._idle = cold
+        self.broken = "cold" if cold else ""
         """Why warm nodes cannot be forked; empty if they can."""
-        self.shared = SharedModules()
-        self._steps: Iterator[str] = self._all_steps()
-        self._idle_steps: Iterator[str] = iter(())
-        self._idle = True
-        self._packages: set[str] = set()
-        self.also(packages)
+        self._steps: Iterator[object] = chain(self._ros(), self._shared("__preload__"))
+        self._idle_steps: Iterator[object] = self._shared("__preload_idle__")
+        self._stamps: dict[str, tuple[float, int] | None] = {}
+        """What each of Deck's modules was when it was imported here."""
 
     @property
     def wait_s(self) -> float | None:
@@ -64,15 +65,6 @@ class Preload:
         if not self.done:
             return 0.0
         return None if self._idle else IDLE_AFTER_S
-
-    def also(self, packages: Iterable[str]) -> None:
-        """Add the shared modules of these packages to the imports."""
-        new = [package for package in packages if package not in self._packages]
-        if new and not self.broken:
-            self._packages.update(new)
-            self._steps = chain(self._steps, self._shared_steps(new))
-            self._idle_steps = chain(self._idle_steps, self._some_steps(new))
-            self.done = self._idle = False
 
     def step(self) -> None:
         """Import the next thing, if there is one."""
@@ -85,12 +77,24 @@ class Preload:
             self.done = self._idle = True
             self.broken = f"{type(problem).__name__}: {problem}"
 
-    def _all_steps(self) -> Iterator[str]:
+    def renew(self, module: str) -> None:
+        """In a forked node, which is to run this module: drop what it has to import itself."""
+        if not is_ours(module):
+            # By the same names it may mean others.
+            for name in [name for name in sys.modules if _stamp(name)]:
+                del sys.modules[name]
+        elif any(_stamp(name) != stamp for name, stamp in self._stamps.items()):
+            for name in self._stamps:
+                sys.modules.pop(name, None)
+        elif module.startswith(f"{NODES}.") and NODES in sys.modules:
+            # It looks at the command line.
+            importlib.reload(sys.modules[NODES])
+
+    def _ros(self) -> Iterator[object]:
         # Imports create hardly any garbage; looking for it would take 50 ms.
         gc.disable()
         for name in _FIRST:
-            importlib.import_module(name)
-            yield name
+            yield importlib.import_module(name)
         importlib.import_module("rclpy").get_rmw_implementation_identifier()
         for name in _INTERFACES:
             # Not every package is installed everywhere.
@@ -101,29 +105,37 @@ class Preload:
         warnings.filterwarnings("ignore", message=".*multi-threaded.*fork")
         yield _freeze()
 
-    def _shared_steps(self, packages: Iterable[str]) -> Iterator[str]:
-        for package in packages:
-            yield from self.shared.load(package)
+    def _shared(self, attribute: str) -> Iterator[object]:
+        with contextlib.suppress(Exception):
+            yield self._import(NODES)
+            for name in getattr(sys.modules[NODES], attribute):
+                yield self._import(name)
         yield _freeze()
 
-    def _some_steps(self, packages: Iterable[str]) -> Iterator[str]:
-        for package in packages:
-            yield from self.shared.load_idly(package)
-        yield _freeze()
+    def _import(self, name: str) -> object:
+        before = set(sys.modules)
+        try:
+            return importlib.import_module(name, NODES)
+        finally:
+            new = {name: _stamp(name) for name in set(sys.modules) - before}
+            self._stamps |= {name: stamp for name, stamp in new.items() if stamp}
 
 
-def _find_callers() -> None:
-    """Make `inspect` record where every module is, as it does at its first call.
-
-    rclpy's loggers ask it for the caller's position, which costs 20 ms of a node's start; here it
-    is done once for all.
-    """
-    inspect.getmodule(inspect.currentframe())
+def _stamp(name: str) -> tuple[float, int] | None:
+    """Return what differs once a module of Deck has been written; None for others, and if it is gone."""
+    file = str(getattr(sys.modules.get(name), "__file__", ""))
+    if file.startswith(f"{INSTALLATION}/") and "/site-packages/" not in file.removeprefix(INSTALLATION):
+        with contextlib.suppress(OSError):
+            status = os.stat(file)  # noqa: PTH116
+            return status.st_mtime, status.st_size
+    return None
 
 
 def _freeze() -> str:
     """Exclude all current objects from garbage collection, which would write to shared pages."""
-    _find_callers()
+    # `inspect` records at its first call where every module is. rclpy's loggers ask it for the caller's
+    # position, which would cost 20 ms of each node's start.
+    inspect.getmodule(inspect.currentframe())
     gc.freeze()
     gc.enable()
     return "frozen"

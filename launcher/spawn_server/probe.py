@@ -18,15 +18,16 @@ import os
 import select
 import time
 from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from text.nested import read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rclpy.node import Node
+    from rclpy.subscription import Subscription
 
 EAGER_S = 10.0
 """It checks often for this long, because a start is in progress."""
@@ -73,47 +74,37 @@ class ArrivalRate:
         return (COUNTED - 1) / lasted_s if lasted_s > 0 else 0.0
 
 
-class _Counter:
-    def __init__(self, node: Node, topic: str, kind: type[Any]) -> None:
-        from rclpy.qos import QoSProfile, ReliabilityPolicy
-
-        # This receives from reliable and best-effort publishers.
-        quality = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._subscription = node.create_subscription(kind, topic, lambda _message: None, quality, raw=True)
-        self._rate = ArrivalRate()
-
-    def rate_hz(self) -> float:
-        """Current messages per second; 0 until enough have arrived to compute it."""
-        subscription = self._subscription
-        while True:
-            with subscription.handle:
-                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-            if taken is None:
-                break
-            info = taken[1]
-            self._rate.add(info["source_timestamp"] / 1e9, info["received_timestamp"] / 1e9)
-        return self._rate.hz(time.time())
-
-
 class MessageRates:
     """Counts the messages of each topic from the first request for it on."""
 
     def __init__(self, node: Node) -> None:
         """`node`: the node that subscribes."""
         self._node = node
-        self._counters: dict[tuple[str, str], _Counter] = {}
+        self._counted: dict[tuple[str, str], tuple[Subscription, ArrivalRate]] = {}
 
     def rate_hz(self, topic: str, type_name: str) -> float | None:
-        """Return messages per second, None if their type is not installed."""
-        counter = self._counters.get((topic, type_name))
-        if counter is None:
+        """Return messages per second, 0 until enough have arrived; None if their type is not installed."""
+        if (topic, type_name) not in self._counted:
             package, _, name = type_name.partition("/msg/")
             try:
                 kind = getattr(importlib.import_module(f"{package}.msg"), name)
             except (ImportError, AttributeError):
                 return None
-            counter = self._counters[topic, type_name] = _Counter(self._node, topic, kind)
-        return counter.rate_hz()
+            self._counted[topic, type_name] = self._subscribed(topic, kind), ArrivalRate()
+        subscription, rate = self._counted[topic, type_name]
+        while True:
+            with subscription.handle:
+                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+            if taken is None:
+                return rate.hz(time.time())
+            rate.add(taken[1]["source_timestamp"] / 1e9, taken[1]["received_timestamp"] / 1e9)
+
+    def _subscribed(self, topic: str, kind: type[Any]) -> Subscription:
+        from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+        # This receives from reliable and best-effort publishers.
+        quality = QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.BEST_EFFORT)
+        return self._node.create_subscription(kind, topic, lambda _message: None, quality, raw=True)
 
 
 class _Wanted(NamedTuple):
@@ -132,20 +123,15 @@ class _Report:
     clashes: list[tuple[str, list[tuple[str, str]]]] | None = None
     """None as long as they are not known."""
 
-    def differs(self, other: _Report) -> bool:
-        """Whether anything but the rates differs."""
-        return (self.met, self.clashes, [x[:2] for x in self.seen]) != (
-            other.met,
-            other.clashes,
-            [x[:2] for x in other.seen],
-        )
+    @property
+    def lasting(self) -> object:
+        """All but the rates, which change all the time."""
+        return self.met, self.clashes, [seen[:2] for seen in self.seen]
 
 
-def probe(argv: Sequence[str]) -> None:
-    """Watch until stdin ends.
-
-    `argv` is a single JSON list of `[kind, name, type, rate]`.
-    """
+@contextmanager
+def hidden_node(name: str) -> Iterator[tuple[Node, int]]:
+    """Make a node for the length of a `with`; yields it, and where to write reports to the supervisor."""
     # Fast DDS prints its errors to stdout.
     reports = os.dup(1)
     os.dup2(2, 1)
@@ -153,17 +139,23 @@ def probe(argv: Sequence[str]) -> None:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    conditions = [_Wanted(*fields) for fields in read_json(argv[0])]
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     # A leading underscore hides a node from the usual lists.
     node = rclpy.create_node(
-        f"_deck_probe_{os.getpid()}", use_global_arguments=False, enable_rosout=False, start_parameter_services=False
+        f"_{name}_{os.getpid()}", use_global_arguments=False, enable_rosout=False, start_parameter_services=False
     )
     try:
-        _watch(node, conditions, MessageRates(node), reports)
+        yield node, reports
     finally:
         node.destroy_node()
         rclpy.shutdown()
+
+
+def probe(argv: Sequence[str]) -> None:
+    """Watch until stdin ends; `argv` is a single JSON list of `[kind, name, type, rate]`."""
+    conditions = [_Wanted(*fields) for fields in read_json(argv[0])]
+    with hidden_node("deck_probe") as (node, reports):
+        _watch(node, conditions, MessageRates(node), reports)
 
 
 def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates, reports: int) -> None:
@@ -177,10 +169,8 @@ def _watch(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates, re
         if now >= clashes_at:
             clashes, clashes_at = _clashes(node), now + CLASHES_S
         report.clashes = clashes
-        # Rates change all the time; all else is reported at once.
-        if told is None or report.differs(told) or (report != told and now > told_at + RATES_S):
-            line = {"met": report.met, "seen": report.seen, "clashes": report.clashes}
-            os.write(reports, json.dumps(line).encode() + b"\n")
+        if told is None or report.lasting != told.lasting or (report != told and now > told_at + RATES_S):
+            os.write(reports, json.dumps(vars(report)).encode() + b"\n")
             told, told_at = report, now
         eager = now - started < EAGER_S
         if select.select([0], [], [], EAGER_PERIOD_S if eager else CALM_PERIOD_S)[0]:
@@ -191,29 +181,22 @@ def _look(node: Node, conditions: Sequence[_Wanted], arrivals: MessageRates) -> 
     names = {f"{space.rstrip('/')}/{name}" for name, space in node.get_node_names_and_namespaces()}
     report = _Report()
     for position, wanted in enumerate(conditions):
-        if wanted.kind != "topic":
-            met = (
-                f"/{wanted.name.lstrip('/')}" in names
-                if wanted.kind == "node"
-                else node.count_services(wanted.name) > 0
-            )
-            if met:
-                report.met.append(position)
-            continue
-        if not node.count_publishers(wanted.name):
-            continue
-        ends = node.get_publishers_info_by_topic(wanted.name)
-        types = sorted({end.topic_type for end in ends})
-        if not types or (wanted.type and wanted.type not in types):
-            report.seen.append((position, types, None))
-            continue
-        if not wanted.rate_hz:
-            report.met.append(position)
-            continue
-        rate_hz = arrivals.rate_hz(wanted.name, wanted.type or types[0])
-        if rate_hz is not None and rate_hz >= ENOUGH * wanted.rate_hz:
-            report.met.append(position)
+        rate_hz, types = None, []
+        if wanted.kind == "node":
+            met = f"/{wanted.name.lstrip('/')}" in names
+        elif wanted.kind == "service":
+            met = node.count_services(wanted.name) > 0
+        elif not node.count_publishers(wanted.name):
+            met = False
         else:
+            types = sorted({end.topic_type for end in node.get_publishers_info_by_topic(wanted.name)})
+            met = bool(types) and wanted.type in ("", *types)
+            if met and wanted.rate_hz:
+                rate_hz = arrivals.rate_hz(wanted.name, wanted.type or types[0])
+                met = rate_hz is not None and rate_hz >= ENOUGH * wanted.rate_hz
+        if met:
+            report.met.append(position)
+        elif types:
             report.seen.append((position, types, rate_hz))
     return report
 

@@ -4,53 +4,90 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
+import os
 import signal
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+import socket
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 from launcher.processes.signal import send
-from launcher.spawn_server.link import SpawnServerLink
+from launcher.spawn_server import SpawnRequest
 from launcher.spawn_server.start import SpawnServerHandle, start_spawn_server
+from text.nested import read_json
 from text.os_words import os_reason
 from text.sentences import Words, say
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-MAX_ATTEMPTS = 4
-"""Attempts for one request, each with a new spawn server if the last one died."""
-MAX_HANGS = 2
-"""How many of them may fail to answer."""
+MAX_ATTEMPTS = 3
+"""Attempts for one request, each with a new spawn server if the last one died, or did not answer."""
 MAX_QUICK_DEATHS = 3
 """After this many spawn servers without a single answer, the next one is cold (no imports)."""
 ANSWER_WITHIN_S = 30.0
 """On a slow machine the imports may take a large part of this."""
+MAX_ANSWER = 65536
 
 
 class SpawnError(Exception):
     """A process could not be started; the argument says why."""
 
 
-@dataclass(frozen=True)
-class SpawnRequest:
-    """One process to be started."""
-
-    kind: str
-    """`module`, `exec`, `probe` or `lifecycle`, see `launcher.spawn_server.node.ForkSpec`."""
-    name: str
-    title: str
-    argv: tuple[str, ...]
-    cwd: str
-    env: Mapping[str, str | None] = field(default_factory=dict)
-    """Changes to the supervisor's environment; None unsets."""
-
-
-@dataclass(frozen=True)
-class SpawnedProcess:
+class SpawnedProcess(NamedTuple):
     """A started process: the leader of its own session and group, and our child."""
 
     pid: int
     started_ticks: int
+
+
+class _Server:
+    """One spawn server, for as long as its socket is open."""
+
+    def __init__(
+        self,
+        handle: SpawnServerHandle,
+        on_answer: Callable[[dict[str, Any]], None],
+        on_end: Callable[[_Server], None],
+    ) -> None:
+        """`on_end` is called once, after its last answer, when the server has died."""
+        self.handle = handle
+        self.answered = False
+        """Whether it has ever answered."""
+        self.hung = False
+        """Whether it was killed because it did not answer in time."""
+        self._on_answer, self._on_end = on_answer, on_end
+        asyncio.get_running_loop().add_reader(handle.link, self._read)
+
+    def tell(self, message: dict[str, object], fds: Sequence[int]) -> None:
+        """Send a message, with copies of descriptors; raises OSError if there is no room for them."""
+        # In a memory file, as a packet is limited to some 200 kB, less than a command line may need.
+        with os.fdopen(os.memfd_create("deck message"), "wb") as file:
+            file.write(json.dumps(message).encode())
+            file.flush()
+            # If it is dead, the reading side will notice after its last answers.
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                socket.send_fds(self.handle.link, [b"."], [file.fileno(), *fds])
+
+    def kill(self, *, hung: bool = False) -> None:
+        """Kill the server; answers that it has already sent are still read."""
+        self.hung = self.hung or hung
+        send(self.handle, signal.SIGKILL)
+
+    def drop(self) -> None:
+        asyncio.get_running_loop().remove_reader(self.handle.link)
+        self.handle.link.close()
+
+    def _read(self) -> None:
+        try:
+            packet = self.handle.link.recv(MAX_ANSWER)
+        except BlockingIOError:
+            return
+        except OSError:
+            packet = b""
+        if packet:
+            self.answered = True
+            self._on_answer(read_json(packet))
+        else:
+            self.drop()
+            self._on_end(self)
 
 
 class Spawner:
@@ -71,15 +108,13 @@ class Spawner:
         self._pending: dict[int, asyncio.Future[SpawnedProcess | None]] = {}
         self._next_id = 1
         self._quick_deaths = 0
-        self._groups: set[int] = set()
         self._closed = False
-        self._packages: list[str] = []
-        self._link: SpawnServerLink | None = self._linked(server)
+        self._server: _Server | None = _Server(server, self._answered, self._ended)
 
     @property
     def server_pid(self) -> int | None:
         """The process number of the current server."""
-        return None if self._link is None else self._link.handle.pid
+        return None if self._server is None else self._server.handle.pid
 
     async def spawn(self, request: SpawnRequest, fds: Sequence[int]) -> SpawnedProcess:
         """Start a process with these descriptors, which the caller still has to close.
@@ -93,20 +128,13 @@ class Spawner:
         Raises:
             SpawnError: if the process was not started.
         """
-        hangs = 0
         for _attempt in range(MAX_ATTEMPTS):
-            link = self._present()
-            spawned = await self._ask(link, request, fds)
+            spawned = await self._ask(self._present(), request, fds)
             if spawned is not None:
-                self._groups.add(spawned.pid)
-                self._mention("adopt", [spawned.pid])  # A new server gets all existing groups.
                 return spawned
-            hangs += link.hung
-            if hangs == MAX_HANGS:
-                raise SpawnError(say("the spawn server does not answer"))
         raise SpawnError(say("the spawn server keeps ending"))
 
-    async def _ask(self, link: SpawnServerLink, request: SpawnRequest, fds: Sequence[int]) -> SpawnedProcess | None:
+    async def _ask(self, server: _Server, request: SpawnRequest, fds: Sequence[int]) -> SpawnedProcess | None:
         """Return the new process, None if the server died before answering.
 
         Anything it forked has been answered before: the end of the socket comes after all answers.
@@ -115,10 +143,10 @@ class Spawner:
         future: asyncio.Future[SpawnedProcess | None] = asyncio.get_running_loop().create_future()
         self._pending[request_id] = future
         try:
-            link.tell({"id": request_id, **vars(request)}, fds)
+            server.tell({"id": request_id, **vars(request)}, fds)
             await asyncio.wait([future], timeout=self._answer_within_s)
             if not future.done():
-                link.kill(hung=True)
+                server.kill(hung=True)
                 await asyncio.wait([future], timeout=self._answer_within_s)
         except OSError as problem:
             raise SpawnError(os_reason(problem)) from problem
@@ -132,49 +160,35 @@ class Spawner:
             raise SpawnError(say("the spawn server does not answer"))
         return future.result()
 
-    def forget(self, pid: int) -> None:
-        """Note that a started process and its group no longer exist."""
-        if pid in self._groups:
-            self._groups.discard(pid)
-            self._mention("forget", [pid])
-
-    def preload(self, packages: Iterable[str]) -> None:
-        """Have the shared modules of these packages imported before their first node starts."""
-        self._packages = sorted(packages)
-        self._mention_packages()
-
     def go_cold(self) -> None:
         """Replace the server with one that imports nothing: no node of this run needs them."""
         self._warm = False
-        if self._link is not None:
-            self._link.kill()
-            self._link.drop()
+        if self._server is not None:
+            self._server.kill()
+            self._server.drop()
         self._replace()
 
     def close(self) -> None:
         """Release the server; nothing of the run is left that it would have to end."""
         self._closed = True
-        if self._link is not None:
+        if self._server is not None:
             # It may be in the middle of its imports, or not respond at all.
-            self._link.kill()
-            self._link.drop()
-            self._link = None
+            self._server.kill()
+            self._server.drop()
+            self._server = None
         for future in self._pending.values():
             if not future.done():
                 future.set_exception(SpawnError(_ending()))
 
-    def _present(self) -> SpawnServerLink:
+    def _present(self) -> _Server:
         """Return the current server, or a new one if there is none."""
         if self._closed:
             raise SpawnError(_ending())
-        if self._link is None:
+        if self._server is None:
             self._replace()
-        if self._link is None:
+        if self._server is None:
             raise SpawnError(say("there is no spawn server"))
-        return self._link
-
-    def _linked(self, server: SpawnServerHandle) -> SpawnServerLink:
-        return SpawnServerLink(server, self._answered, self._ended)
+        return self._server
 
     def _answered(self, answer: dict[str, Any]) -> None:
         self._quick_deaths = 0
@@ -187,38 +201,26 @@ class Spawner:
         else:
             future.set_exception(SpawnError(answer["error"]))
 
-    def _ended(self, link: SpawnServerLink) -> None:
-        self._link = None
+    def _ended(self, server: _Server) -> None:
+        self._server = None
         for future in self._pending.values():
             if not future.done():
                 future.set_result(None)
         if self._closed:
             return
         self._quick_deaths += 1
-        if self._quick_deaths >= MAX_QUICK_DEATHS or (link.hung and not link.answered):
+        if self._quick_deaths >= MAX_QUICK_DEATHS or (server.hung and not server.answered):
             self._warm = False
-        self._tell(_why_replaced(link, self._answer_within_s))
+        self._tell(_why_replaced(server, self._answer_within_s))
         self._replace()
 
     def _replace(self) -> None:
         try:
-            self._link = self._linked(start_spawn_server(self._run_id, warm=self._warm))
+            server = start_spawn_server(self._run_id, warm=self._warm)
+            self._server = _Server(server, self._answered, self._ended)
         except OSError as problem:
-            self._link = None
+            self._server = None
             self._tell(say("no spawn server can be started: {reason}", reason=os_reason(problem)))
-            return
-        self._mention("adopt", sorted(self._groups))
-        self._mention_packages()
-
-    def _mention(self, kind: str, groups: list[int]) -> None:
-        if self._link is not None and groups:
-            with contextlib.suppress(OSError):
-                self._link.tell({"kind": kind, "groups": groups})
-
-    def _mention_packages(self) -> None:
-        if self._link is not None and self._packages and self._warm:
-            with contextlib.suppress(OSError):
-                self._link.tell({"kind": "preload", "packages": self._packages})
 
 
 def _end(spawned: SpawnedProcess | None) -> None:
@@ -231,9 +233,9 @@ def _ending() -> Words:
     return say("the session is ending")
 
 
-def _why_replaced(link: SpawnServerLink, within_s: float) -> Words:
-    pid = link.handle.pid
-    if link.hung:
+def _why_replaced(server: _Server, within_s: float) -> Words:
+    pid = server.handle.pid
+    if server.hung:
         return say(
             "the spawn server (pid {pid}) did not answer within {seconds:g} s and was killed; a new one takes over",
             pid=pid,

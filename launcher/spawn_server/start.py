@@ -7,13 +7,9 @@ import signal
 import socket
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from launcher.processes.prctl import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
 from launcher.processes.table import RUN_MARK, read_process
-from launcher.processes.title import ROOM_ARGUMENT, room_for_marks, show_mark, show_title
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 
 @dataclass(frozen=True)
@@ -26,10 +22,8 @@ class SpawnServerHandle:
     warm: bool
 
 
-def fork_spawn_server(run_id: str, packages: Sequence[str]) -> SpawnServerHandle:
+def fork_spawn_server(run_id: str) -> SpawnServerHandle:
     """Fork a warm server from this process, which becomes the parent of its nodes.
-
-    It begins with the shared modules of `packages`, before there is a plan.
 
     This is faster than starting another Python, and only possible while this one has done nothing
     else. In the server, and in everything forked from it, this function does not return.
@@ -50,7 +44,7 @@ def fork_spawn_server(run_id: str, packages: Sequence[str]) -> SpawnServerHandle
 
     from launcher.spawn_server.server import serve
 
-    serve(theirs, supervisor, packages, cold=False)
+    serve(theirs, supervisor, cold=False)
     sys.exit()
 
 

@@ -1,7 +1,6 @@
 """The supervisor: starts a session's nodes, monitors them, and ends them.
 
-`python -m launcher.supervisor PACKAGE... ROOM` is started by `launcher.client.client.launch`.
-PACKAGE names packages that its nodes will probably come from. It reads its plan as one line from
+`python -m launcher.supervisor ROOM` is started by `launcher.client.client.launch`. It reads its plan as one line from
 stdin, which then stays open as long as the client lives: a foreground session ends when it is
 closed. It answers with one line on stdout: where to connect, or why it cannot run.
 """
@@ -25,9 +24,13 @@ def main() -> None:
     become_subreaper()
     run_id = new_run_id()
     # This comes first: its imports take longer than everything done here in the meantime.
-    spawn_server = fork_spawn_server(run_id, sys.argv[1:-1])
+    spawn_server = fork_spawn_server(run_id)
 
+    # asyncio does without it where there is none; nobody here speaks TLS, for which it takes 1.4 MB.
+    sys.modules["ssl"] = None  # type: ignore[assignment]
     import asyncio
+
+    del sys.modules["ssl"]
 
     from launcher.supervisor.run import run
 

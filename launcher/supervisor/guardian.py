@@ -9,15 +9,11 @@ from __future__ import annotations
 
 import os
 import signal
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
-from launcher.processes.abandoned import end_all
-from launcher.processes.prctl import become_subreaper
-from launcher.processes.table import GUARDIAN_NAME, processes
-from launcher.processes.title import show_name, show_title
-
-if TYPE_CHECKING:
-    from launcher.processes.table import Process
+from launcher.processes.prctl import become_subreaper, set_short_name, show_title
+from launcher.processes.signal import end_all
+from launcher.processes.table import GUARDIAN_NAME, Process, processes
 
 
 def fork_under_guardian() -> None:
@@ -35,7 +31,7 @@ def _guard(supervisor: int) -> NoReturn:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     show_title("deck: guardian")
-    show_name(GUARDIAN_NAME)
+    set_short_name(GUARDIAN_NAME)
     nowhere = os.open(os.devnull, os.O_RDWR)
     for fd in range(3):
         # A reader that waits for the end of the supervisor's output must not wait for us.

@@ -6,26 +6,23 @@ It all happens in one task, so that nothing can start the node twice.
 from __future__ import annotations
 
 import asyncio
+import signal
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 from launcher.processes.exit import UNSEEN, Exit
+from launcher.processes.members import Usage
 from launcher.processes.stop import PATIENT, QUICK, StagedStop
+from launcher.processes.table import Process
+from launcher.profile.node import Node
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, NodeStatus, Severity
-from launcher.supervisor.readying import Readying, why_unready
-from launcher.supervisor.restart_policy import Again, Finished, GivenUp, RestartPolicy
+from launcher.supervisor.process import NodeProcess
+from launcher.supervisor.readiness import NodeSession, bring_up
+from launcher.supervisor.restart_policy import Again, GivenUp, RestartPolicy
 from launcher.supervisor.words import NOT_EXECUTABLE, NOT_FOUND, end_words, left_undone, stopped_words, suspended, who
 from text.sentences import say
-
-if TYPE_CHECKING:
-    import signal
-    from collections.abc import Sequence
-
-    from launcher.processes.table import Process
-    from launcher.processes.usage import Usage
-    from launcher.profile.node import Node
-    from launcher.supervisor.readying import NodeContext, RunningProcess
 
 USAGE = 2
 """Exit code of a program that rejects its arguments; Deck's nodes use it for parameters."""
@@ -57,7 +54,7 @@ class _Crash:
 class _Now:
     """State that exists only while a process runs."""
 
-    process: RunningProcess
+    process: NodeProcess
     started: float
     stop: StagedStop | None = None
     failure: str = ""
@@ -67,21 +64,20 @@ class _Now:
 class SupervisedNode:
     """One node of the session."""
 
-    def __init__(self, plan: Node, around: NodeContext) -> None:
-        """`around`: the session that the node belongs to."""
+    def __init__(self, plan: Node, session: NodeSession) -> None:
         self.plan = plan
         self.state = NodeState.WAITING
         self.detail = ""
         self.serves = False
         """Whether the nodes that need it may start."""
-        self.usage: Usage | None = None
+        self.usage: Usage = None, None
         self.fault: NodeFault | None = None
         """What is wrong with the learner's own file."""
         self._clash: NodeFault | None = None
         self._suspended: NodeFault | None = None
         """What a signal has done to its process, while that lasts."""
         self._crash: _Crash | None = None
-        self._around = around
+        self._session = session
         self._policy = RestartPolicy(plan.restart)
         self._restarts = 0
         self._last: Exit | None = None
@@ -103,7 +99,8 @@ class SupervisedNode:
         return self._task is not None and not self._task.done()
 
     def status(self) -> NodeStatus:
-        now, last, usage = self._now, self._last, self.usage
+        now, last = self._now, self._last
+        cpu_percent, memory_bytes = self.usage if now else (None, None)
         crash = self._recent_crash()
         fault = self.fault if self._suspended is None else self._suspended
         return NodeStatus(
@@ -112,12 +109,12 @@ class SupervisedNode:
             state=self.state,
             detail=self.detail or (crash.words if crash is not None else ""),
             pid=now.process.pid if now else None,
-            uptime_s=self._around.clock.now() - now.started if now else None,
+            uptime_s=self._session.clock.now() - now.started if now else None,
             restarts=self._restarts,
             exit_code=last.code if last and not now else None,
             signal=last.signal if last and not now else None,
-            cpu_percent=usage.cpu_percent if usage and now else None,
-            memory_bytes=usage.memory_bytes if usage and now else None,
+            cpu_percent=cpu_percent,
+            memory_bytes=memory_bytes,
             needs=self.plan.needs,
             file=self.plan.file,
             fault=fault or (crash.fault if crash is not None else None),
@@ -125,7 +122,7 @@ class SupervisedNode:
 
     def _recent_crash(self) -> _Crash | None:
         """Return what is still to be shown of the process before this one."""
-        crash, now_s = self._crash, self._around.clock.now()
+        crash, now_s = self._crash, self._session.clock.now()
         if crash is None or (crash.well_s is not None and now_s - crash.well_s > WELL_AFTER_S):
             return None
         return crash
@@ -150,7 +147,7 @@ class SupervisedNode:
         """
         self._again = False
         if self.at_work and self._task is not None:
-            asked_before = self._down and self._around.clock.now() - self._asked_at > ASKED_TWICE_S
+            asked_before = self._down and self._session.clock.now() - self._asked_at > ASKED_TWICE_S
             self._go_down(now=now or asked_before)
             stuck = asyncio.create_task(self._stuck.wait())
             await asyncio.wait([self._task, stuck], return_when=asyncio.FIRST_COMPLETED)
@@ -175,36 +172,32 @@ class SupervisedNode:
         """Note something that is wrong while it runs."""
         if fault is not None and self._now is not None:
             self.fault = fault
-            self._around.changed(self.plan.name, self.state)
+            self._changed()
 
     def ail(self, fault: NodeFault) -> None:
         """Note that it runs, and does not do its work: a callback is stuck, a thread has ended."""
-        if self._now is None or self._down:
-            return
-        self.fault = fault
-        self._around.say(self.plan.name, Severity.ERROR, fault.words)
-        self._around.changed(self.plan.name, self.state)
+        if self._now is not None and not self._down:
+            self.fault = fault
+            self.say(Severity.ERROR, fault.words)
+            self._changed()
 
     def go_on(self) -> None:
         """Note that the callback that seemed stuck has returned."""
-        if self._now is None or self._down:
-            return
-        if self.fault is None or self.fault.kind != STUCK:
-            return
-        self.fault = replace(self.fault, kind="warning")
-        self._around.say(self.plan.name, Severity.INFO, say("it goes on after all"))
-        self._around.changed(self.plan.name, self.state)
+        if self._now is not None and not self._down and self.fault is not None and self.fault.kind == STUCK:
+            self.fault = replace(self.fault, kind="warning")
+            self.say(Severity.INFO, say("it goes on after all"))
+            self._changed()
 
     def halted(self, pid: int) -> None:
         """Note which of its processes a signal has suspended; 0: none."""
         if self._now is None or self._down or bool(pid) is (self._suspended is not None):
             return
-        self._suspended = suspended(pid) if pid else None
-        if self._suspended is not None:
-            self._around.say(self.plan.name, Severity.ERROR, self._suspended.words)
+        self._suspended = fault = suspended(pid) if pid else None
+        if fault is None:
+            self.say(Severity.INFO, say("it runs again, after SIGCONT"))
         else:
-            self._around.say(self.plan.name, Severity.INFO, say("it runs again, after SIGCONT"))
-        self._around.changed(self.plan.name, self.state)
+            self.say(Severity.ERROR, fault.words)
+        self._changed()
 
     def clashes(self, fault: NodeFault | None) -> None:
         """Note a topic that has another type elsewhere, or that this is no longer so."""
@@ -213,8 +206,8 @@ class SupervisedNode:
         if self.fault is None or self.fault == self._clash:
             self.fault = fault
             if fault is not None:
-                self._around.say(self.plan.name, Severity.WARN, fault.words)
-            self._around.changed(self.plan.name, self.state)
+                self.say(Severity.WARN, fault.words)
+            self._changed()
         self._clash = fault
 
     def saved(self, fault: NodeFault | None) -> None:
@@ -227,11 +220,18 @@ class SupervisedNode:
     def _renew(self, fault: NodeFault | None, why: str) -> None:
         self.fault = fault
         if fault is not None:
-            self._around.say(self.plan.name, Severity.ERROR, fault.words)
+            self.say(Severity.ERROR, fault.words)
         elif not self._down or self._again:
-            self._around.say(self.plan.name, Severity.INFO, why)
+            self.say(Severity.INFO, why)
             self.restart()
-        self._around.changed(self.plan.name, self.state)
+        self._changed()
+
+    def say(self, severity: Severity, words: str) -> None:
+        """Add a line about it to its log."""
+        self._session.log.say(self.plan.name, severity, words)
+
+    def _changed(self) -> None:
+        self._session.changed(self.plan.name, self.state)
 
     def needs_changed(self) -> None:
         """Check again whether everything it needs is there."""
@@ -248,7 +248,7 @@ class SupervisedNode:
 
     def _go_down(self, *, now: bool) -> None:
         if not self._down:
-            self._asked_at = self._around.clock.now()
+            self._asked_at = self._session.clock.now()
         self._down = True
         self._hurried = self._hurried or now
         self.serves = False
@@ -263,10 +263,10 @@ class SupervisedNode:
         if self._crash is not None and not well:
             self._crash.well_s = None
         elif self._crash is not None and self._crash.well_s is None:
-            self._crash.well_s = self._around.clock.now()
+            self._crash.well_s = self._session.clock.now()
         if state in (NodeState.READY, NodeState.RUNNING) and self._does_not_compile:
             self.fault = None
-        self._around.changed(self.plan.name, self.state)
+        self._changed()
 
     async def _live(self) -> None:
         while True:
@@ -284,7 +284,7 @@ class SupervisedNode:
 
     async def _wait_for_needs(self) -> None:
         while not self._down and not self._forced:
-            missing = self._around.missing(self.plan)
+            missing = self._session.missing(self.plan)
             if not missing:
                 break
             if (self.state, self.detail) != (NodeState.WAITING, missing):
@@ -302,7 +302,7 @@ class SupervisedNode:
             end = Exit(None)
             lasted = 0.0
             why: str = say("cannot be started: {reason}", reason=problem.args[0])
-            self._around.say(self.plan.name, Severity.ERROR, why)
+            self.say(Severity.ERROR, why)
         else:
             if process is None:
                 return False
@@ -315,42 +315,46 @@ class SupervisedNode:
                 why = self.fault.words
                 warns = self.fault.kind == "warning"
                 gravity = Severity.WARN if warns else Severity.ERROR
-                self._around.say(self.plan.name, gravity, why)
+                self.say(gravity, why)
         if self._down:
             return False
         return await self._after(end, lasted, why)
 
-    async def _launched(self) -> RunningProcess | None:
+    async def _launched(self) -> NodeProcess | None:
         """Start a process; None if the node is to stop before there is one."""
-        launching = asyncio.ensure_future(self._around.launch(self.plan))
-        launching.add_done_callback(lambda _launched: self._nudge.set())
-        while not launching.done() and not self._down:
-            self._nudge.clear()
-            await self._nudge.wait()
+        launching = asyncio.ensure_future(self._session.launch(self.plan))
+        await self._until_down_or(launching)
         if not launching.done():
             launching.cancel()
             await asyncio.wait([launching])
         return None if launching.cancelled() else launching.result()
 
-    async def _see_through(self, process: RunningProcess) -> tuple[Exit, float, str]:
-        """Follow a process; return its end, its age in seconds, and why it was ended by Deck."""
-        clock = self._around.clock
-        self._now = now = _Now(process, clock.now())
-        self._last = self.usage = self._clash = self._suspended = None
-        if not self._does_not_compile:
-            self.fault = None
-        self._around.say(self.plan.name, Severity.INFO, say("started, pid {pid}", pid=process.pid))
-        process.ended.add_done_callback(lambda _ended: self._nudge.set())
-        ready = asyncio.create_task(Readying(self.plan, self._around, self).run())
-        ready.add_done_callback(lambda _ready: self._nudge.set())
-        while not (process.ended.done() or self._down or now.failure):
+    async def _until_down_or(self, *futures: asyncio.Future[Any]) -> None:
+        """Wait until the node is to stop, or one of these is done."""
+        for future in futures:
+            future.add_done_callback(lambda _done: self._nudge.set())
+        while not self._down and not any(future.done() for future in futures):
             self._nudge.clear()
             await self._nudge.wait()
-            now.failure = why_unready(ready)
+
+    async def _see_through(self, process: NodeProcess) -> tuple[Exit, float, str]:
+        """Follow a process; return its end, its age in seconds, and why it was ended by Deck."""
+        clock = self._session.clock
+        self._now = now = _Now(process, clock.now())
+        self._last = self._clash = self._suspended = None
+        self.usage = None, None
+        if not self._does_not_compile:
+            self.fault = None
+        self.say(Severity.INFO, say("started, pid {pid}", pid=process.pid))
+        ready = asyncio.create_task(bring_up(self, self._session))
+        await self._until_down_or(process.ended, ready)
+        now.failure = ready.result() if ready.done() else ""
+        if not now.failure:
+            await self._until_down_or(process.ended)
         ready.cancel()
         lasted = clock.now() - now.started
         if now.failure:
-            self._around.say(self.plan.name, Severity.ERROR, now.failure)
+            self.say(Severity.ERROR, now.failure)
         if self._down or now.failure:
             self.become(NodeState.STOPPING, now.failure)
         await self._end_all_of_it(now)
@@ -358,7 +362,7 @@ class SupervisedNode:
         await process.close()
         self._now, self._last, self._suspended, self._crash = None, end, None, None
         asked = self._down or bool(now.failure)
-        self._around.say(self.plan.name, self._gravity(end, asked=asked), self._end_words(end, asked=asked))
+        self.say(self._gravity(end, asked=asked), self._end_words(end, asked=asked))
         if self.plan.file:
             self._judge_end(end)
         return end, lasted, now.failure
@@ -367,19 +371,19 @@ class SupervisedNode:
         """Note what is wrong with the learner's own file if it ended other than as it should."""
         if end.clean:
             if not self._down:
-                self.fault = self._around.ended_early(self.plan) or self.fault
+                self.fault = self._session.ended_early(self.plan) or self.fault
             return
-        crash = self._around.crash(self.plan)
+        crash = self._session.crash(self.plan)
         if crash is not None and self._down:
             self.fault = replace(crash, kind="warning")
-            self._around.say(self.plan.name, Severity.WARN, crash.words)
+            self.say(Severity.WARN, crash.words)
         elif crash is not None:
             self.fault = crash
 
     async def _end_all_of_it(self, now: _Now) -> None:
         """Stop what is left: everything if the node is to stop, else what its process left."""
         now.stop = StagedStop(
-            now.process, self._around.clock, self._held_up, QUICK if self._hurried else PATIENT, self._outlived
+            now.process.left, self._session.clock, self._held_up, QUICK if self._hurried else PATIENT, self._outlived
         )
         if now.process.ended.done() and not self._down:
             left = now.process.left()
@@ -392,7 +396,7 @@ class SupervisedNode:
         self._stuck.clear()
         self.outlived = ()
 
-    async def _end_of(self, process: RunningProcess) -> Exit:
+    async def _end_of(self, process: NodeProcess) -> Exit:
         """Return how the process ended, of whose node nothing is left."""
         look = asyncio.Event()
         process.ended.add_done_callback(lambda _ended: look.set())
@@ -400,25 +404,25 @@ class SupervisedNode:
             if process.ended.done():
                 return process.ended.result()
             process.look_for_end()
-            await self._around.clock.wait(look, END_LOOK_EVERY_S)
+            await self._session.clock.wait(look, END_LOOK_EVERY_S)
         return UNSEEN
 
     def _outlived(self, left: Sequence[Process]) -> None:
         self.outlived = left
         words = say("still running after SIGKILL: {who}", who=who(left))
         self.become(NodeState.STOPPING, words)
-        self._around.say(self.plan.name, Severity.ERROR, words)
+        self.say(Severity.ERROR, words)
         self._stuck.set()
 
     def _held_up(self, left: Sequence[Process], number: signal.Signals) -> None:
         words = say("{signal} sent, waiting for {who}", signal=number.name, who=who(left))
         self.become(NodeState.STOPPING, words)
         if number.name != "SIGINT":
-            self._around.say(self.plan.name, Severity.WARN, words)
+            self.say(Severity.WARN, words)
 
     async def _after(self, end: Exit, lasted: float, why: str) -> bool:
         """Apply the restart policy; return whether to start it again."""
-        clock = self._around.clock
+        clock = self._session.clock
         verdict = (
             GivenUp(1)
             if self._is_hopeless(end, lasted)
@@ -440,13 +444,13 @@ class SupervisedNode:
             return not self._down
         undone = next(filter(None, map(left_undone, self.plan.conditions[::-1])), "")
         idle = self.fault is not None and self.fault.kind == IDLE
-        if self.plan.optional or (isinstance(verdict, Finished) and not undone and not idle):
+        if self.plan.optional or (verdict is None and not undone and not idle):
             self.become(NodeState.EXITED, why)
             return False
-        if isinstance(verdict, Finished):
+        if verdict is None:
             why = why if self.fault is not None else undone
             if not idle:
-                self._around.say(self.plan.name, Severity.ERROR, why)
+                self.say(Severity.ERROR, why)
         elif verdict.crashes > 1:
             why = say(
                 "given up after {count} exits in {seconds:.0f} s: {why}",
@@ -454,7 +458,7 @@ class SupervisedNode:
                 seconds=verdict.within_s,
                 why=why,
             )
-            self._around.say(self.plan.name, Severity.ERROR, why)
+            self.say(Severity.ERROR, why)
         self.become(NodeState.FAILED, why)
         return False
 
@@ -477,4 +481,4 @@ class SupervisedNode:
         return Severity.WARN if self.plan.optional else Severity.ERROR
 
     def _end_words(self, end: Exit, *, asked: bool) -> str:
-        return end_words(end, self.plan, self._around.last_words(self.plan.name), asked=asked)
+        return end_words(end, self.plan, self._session.log.last_words(self.plan.name), asked=asked)

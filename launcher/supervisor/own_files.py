@@ -13,7 +13,6 @@ import os
 import time
 from collections.abc import Callable, Iterable, Mapping
 
-from launcher.faults.source import look_at, modules_of
 from launcher.status import NodeFault
 
 QUIET_S = 0.5
@@ -47,6 +46,8 @@ class OwnFiles:
 
     def note(self, node: str, file: str) -> None:
         """Note that this node is about to be started from this file."""
+        from launcher.faults.source import modules_of  # Large, and only learners need it.
+
         self._started[node] = {path: _stamp(path) for path in (file, *modules_of(file))}
 
     async def watch(self) -> None:
@@ -71,7 +72,7 @@ class OwnFiles:
         stop = asyncio.Event()
         ending = asyncio.ensure_future(self._changed.wait())
         ending.add_done_callback(lambda _ended: stop.set())
-        there = _existing(folders)
+        there = [folder for folder in folders if os.path.isdir(folder)]  # noqa: ASYNC240, PTH112
         if not there:
             await asyncio.sleep(AGAIN_S)
             return
@@ -99,15 +100,13 @@ class OwnFiles:
         self._timer = asyncio.get_running_loop().call_later(max(quiet_s, 0.0), self._restart)
 
     def _restart(self) -> None:
+        from launcher.faults.source import look_at, modules_of
+
         written, self._pending = self._pending, set()
         for node, file in self._file_of().items():
-            if (file in written or written & modules_of(file)) and not _is_empty(file):
+            if (file in written or written & modules_of(file)) and _stamp(file)[2]:
                 self.note(node, file)
                 self._saved(node, look_at(file))
-
-
-def _existing(folders: Iterable[str]) -> list[str]:
-    return [folder for folder in folders if os.path.isdir(folder)]  # noqa: PTH112
 
 
 def _stamp(file: str) -> _Stamp:
@@ -120,15 +119,6 @@ def _stamp(file: str) -> _Stamp:
 
 
 def _age_s(file: str) -> float:
-    """Return how long ago a file was written, or put in its place."""
-    try:
-        return max(time.time() - os.stat(file).st_ctime, 0.0)  # noqa: PTH116
-    except OSError:
-        return 0.0
-
-
-def _is_empty(file: str) -> bool:
-    try:
-        return os.path.getsize(file) == 0  # noqa: PTH202
-    except OSError:
-        return True
+    """Return how long ago a file was written, or put in its place; 0 if it is not there."""
+    changed_ns = _stamp(file)[1]
+    return max(time.time() - changed_ns / 1e9, 0.0) if changed_ns else 0.0

@@ -9,38 +9,36 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from pydantic import BaseModel, ConfigDict
-
-from launcher.consent import AgentRules
 from launcher.domain.discovery import settings_of_discovery
-from launcher.domain.domain import ros_environment
+from launcher.domain.domain import settings_of_domain
 from launcher.faults import CHECK_FIELDS
 from launcher.profile.node import Node
 from launcher.ros_tools import ros_tools, without_wheels
 from launcher.status import SessionInfo
+from launcher.wire import pack, unpack
 from text.nested import read_json
 
 if TYPE_CHECKING:
-    # It brings the steps of lessons with it, which a supervisor has no use for.
+    # It is of pydantic, which a supervisor has no use for.
     from launcher.profile.model import Profile
 
 Changes = dict[str, str | None]
 """Changes to the supervisor's environment; None unsets."""
 
 
-class Plan(BaseModel):
+@dataclass(frozen=True)
+class Plan:
     """How all nodes of a session are started."""
-
-    model_config = ConfigDict(frozen=True)
 
     session: SessionInfo
     """What is known of it before it has a supervisor; `log_dir` is the folder of all logs."""
     nodes: tuple[Node, ...]
     env: Changes
     """For all nodes and the probe: domain, discovery, language."""
-    foreign: dict[str, Changes] = {}
+    foreign: dict[str, Changes] = field(default_factory=dict)
     """By node, for the programs of another environment."""
     run_dir: str = ""
     within: tuple[str, ...] = ()
@@ -59,12 +57,6 @@ class Plan(BaseModel):
     def warm(self) -> bool:
         return any(node.is_forked for node in self.nodes)
 
-    @property
-    def packages(self) -> set[str]:
-        """The packages of the modules that are to be forked warm."""
-        modules = (node.run for node in self.nodes if node.is_forked and node.run is not None)
-        return {module.rpartition(".")[0] for module in modules if "/" not in module} - {""}
-
     def env_of(self, node: Node) -> Changes:
         # Mistakes of a learner's own node show at the line where they are made.
         own: Changes = {CHECK_FIELDS: os.environ.get(CHECK_FIELDS, "1")} if node.file else {}
@@ -73,12 +65,13 @@ class Plan(BaseModel):
 
     def to_json(self) -> str:
         """Return it as one line; file names in it may contain lone surrogates."""
-        return json.dumps(self.model_dump(mode="json"))
+        return json.dumps(pack(self))
 
     @classmethod
     def from_json(cls, line: str | bytes) -> Plan:
         """Read the output of `to_json`."""
-        return cls.model_validate(read_json(line))
+        plan: Plan = unpack(cls, read_json(line))
+        return plan
 
 
 def plan_of(
@@ -97,10 +90,10 @@ def plan_of(
         panels=profile.panels,
         log_dir=log_dir,
         foreground=foreground,
-        agents=AgentRules(**profile.agents.model_dump()),
+        agents=profile.agents,
     )
     nodes = tuple(
-        node.model_copy(update={"cwd": node.cwd or os.getcwd()})  # noqa: PTH109
+        replace(node, cwd=node.cwd or os.getcwd())  # noqa: PTH109
         for node in profile.nodes.values()
     )
     return Plan(
@@ -114,11 +107,10 @@ def plan_of(
 
 
 def _common_env(profile: Profile, node_lang: str) -> Changes:
-    wanted: Mapping[str, str] = ros_environment(os.environ, profile.domain, profile.discovery)
     env: Changes = {
-        name: wanted.get(name) for name in {*wanted, *os.environ} if wanted.get(name) != os.environ.get(name)
+        **settings_of_domain(profile.domain, profile.discovery),
+        **settings_of_discovery(os.environ, profile.discovery),
     }
-    env.update(settings_of_discovery(os.environ, profile.discovery))
     # A single format of log lines, which can be parsed.
     env["RCUTILS_CONSOLE_OUTPUT_FORMAT"] = None
     env["RCUTILS_COLORIZED_OUTPUT"] = "0"

@@ -6,8 +6,7 @@ import asyncio
 import contextlib
 import os
 import signal
-import time
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Sequence
 
 from launcher.logs.reader import PipeReader, node_pipe
 from launcher.logs.session_log import SessionLog
@@ -16,37 +15,16 @@ from launcher.processes.members import Members, is_marked
 from launcher.processes.signal import send
 from launcher.processes.table import Process, processes
 from launcher.profile.node import Node
-from launcher.spawn_server.spawner import SpawnedProcess, Spawner, SpawnRequest
+from launcher.spawn_server import SpawnRequest
+from launcher.spawn_server.spawner import SpawnedProcess, Spawner
 from launcher.supervisor.plan import Plan
 
 _ENDS_WITHIN_S = 3.0
 """How long a helper may take to end once its stdin is closed."""
-_FRESH_S = 0.02
-"""A scan of all processes of at most this age also serves other nodes that are stopping."""
-
-
-class ProcessScan:
-    """The processes of all nodes, scanned only as often as useful."""
-
-    def __init__(self, members: Members) -> None:
-        self.members = members
-        self._found: Mapping[str, Sequence[Process]] = {}
-        self._at = float("-inf")
-
-    def look(self, max_age_s: float = _FRESH_S) -> Mapping[str, Sequence[Process]]:
-        """Return the living processes of each node."""
-        now = time.monotonic()
-        if now - self._at > max_age_s:
-            self._found, self._at = self.members.scan(), now
-        return self._found
-
-    def forget(self) -> None:
-        """Drop the cached scan: a process was started or has ended."""
-        self._at = float("-inf")
 
 
 class NodeProcess:
-    """One process that was started for a node; a `RunningProcess`."""
+    """One process that was started for a node, with all its descendants."""
 
     def __init__(
         self,
@@ -70,26 +48,21 @@ class NodeProcess:
 
     def left(self) -> Sequence[Process]:
         """Return its living processes; that there are none is not taken from an earlier look."""
-        scan = self._launcher.scan
-        return scan.look().get(self.name) or scan.look(0.0).get(self.name, ())
+        members = self._launcher.members
+        return members.look().get(self.name) or members.look(0.0).get(self.name, ())
 
     def look_for_end(self) -> None:
         """Look anew for the end of the process itself, of which nobody has told."""
         self._launcher.reaper.look_for(self.pid, self.started_ticks)
 
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal, and wake it if it is suspended, so that it handles it."""
-        send(process, number, signal.SIGCONT)
-
     async def close(self) -> None:
         """Read its last output and forget it."""
         for reader in self._readers:
             reader.close()
-        self._launcher.scan.members.remove(self.pid)
-        self._launcher.spawner.forget(self.pid)
+        self._launcher.members.remove(self.pid)
 
     def _on_end(self, _ended: object) -> None:
-        self._launcher.scan.forget()
+        self._launcher.members.look_anew()
         for reader in self._readers:
             reader.drain()
 
@@ -103,10 +76,10 @@ async def _inner_exit(ended: asyncio.Future[Exit]) -> Exit:
 class ProcessLauncher:
     """Starts processes for nodes, and reads their output into the log."""
 
-    def __init__(self, plan: Plan, spawner: Spawner, reaper: Reaper, scan: ProcessScan, log: SessionLog) -> None:
+    def __init__(self, plan: Plan, spawner: Spawner, reaper: Reaper, members: Members, log: SessionLog) -> None:
         self.spawner = spawner
         self.reaper = reaper
-        self.scan = scan
+        self.members = members
         self._plan = plan
         self._log = log
 
@@ -135,33 +108,21 @@ class ProcessLauncher:
         finally:
             os.close(out_write)
             os.close(err_write)
-        self.scan.members.add(node.name, spawned)
-        self.scan.forget()
+        self.members.add(node.name, spawned)
         return NodeProcess(node.name, spawned, self, readers, confined=bool(within))
 
 
-class Orphans:
-    """The remaining processes of a run whose nodes are gone; a `launcher.processes.stop.Target`."""
-
-    def __init__(self, run_id: str, spawner: Spawner) -> None:
-        """The spawn server is not an orphan: it is needed to the end."""
-        self._run_id = run_id
-        self._spawner = spawner
-
-    def left(self) -> Sequence[Process]:
-        """Return the processes with the run's mark, and the children we have adopted."""
-        us = os.getpid()
-        return [
-            process
-            for process in processes()
-            if process.pid not in (us, self._spawner.server_pid)
-            and not process.zombie
-            and (process.parent == us or is_marked(process, self._run_id))
-        ]
-
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        """Send one of them a signal, and wake it so that it handles it."""
-        send(process, number, signal.SIGCONT)
+def orphans(run_id: str, spawner: Spawner) -> Sequence[Process]:
+    """Return the remaining processes of a run whose nodes are gone: with its mark, or adopted by us."""
+    # The spawn server is needed to the end.
+    needed = (os.getpid(), spawner.server_pid)
+    return [
+        process
+        for process in processes()
+        if process.pid not in needed
+        and not process.zombie
+        and (process.parent == os.getpid() or is_marked(process, run_id))
+    ]
 
 
 @contextlib.asynccontextmanager
@@ -193,14 +154,13 @@ async def helping(spawner: Spawner, reaper: Reaper, request: SpawnRequest) -> As
         os.close(hold)
         os.close(report)
         if spawned is not None:
-            _ = asyncio.create_task(_see_off(spawned, spawner, reaper))  # noqa: RUF006 - it ends by itself
+            _ = asyncio.create_task(_see_off(spawned, reaper))  # noqa: RUF006 - it ends by itself
 
 
-async def _see_off(spawned: SpawnedProcess, spawner: Spawner, reaper: Reaper) -> None:
+async def _see_off(spawned: SpawnedProcess, reaper: Reaper) -> None:
     ended = reaper.exit_of(spawned.pid, spawned.started_ticks)
     try:
         await asyncio.wait_for(asyncio.shield(ended), _ENDS_WITHIN_S)
     except asyncio.TimeoutError:
         send(spawned, signal.SIGKILL)
         await ended
-    spawner.forget(spawned.pid)

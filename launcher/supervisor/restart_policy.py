@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from typing import NamedTuple
 
 FIRST_DELAY_S = 1.0
 LAST_DELAY_S = 30.0
@@ -13,20 +13,13 @@ MAX_CRASHES = 5
 CRASH_WINDOW_S = 60.0
 
 
-@dataclass(frozen=True)
-class Again:
+class Again(NamedTuple):
     """Start it again after a while."""
 
     delay_s: float
 
 
-@dataclass(frozen=True)
-class Finished:
-    """It ended as intended."""
-
-
-@dataclass(frozen=True)
-class GivenUp:
+class GivenUp(NamedTuple):
     """It will not be started again."""
 
     crashes: int
@@ -48,10 +41,10 @@ class RestartPolicy:
         self._delay_s = FIRST_DELAY_S
         self._crashes.clear()
 
-    def after(self, *, clean: bool, lasted_s: float, now: float) -> Again | Finished | GivenUp:
-        """Decide after the node has ended by itself, `clean` if with exit code 0."""
+    def after(self, *, clean: bool, lasted_s: float, now: float) -> Again | GivenUp | None:
+        """Decide after the node has ended by itself, `clean` if with exit code 0; None: it ended as intended."""
         if clean and self._kind != "always":
-            return Finished()
+            return None
         if self._kind == "never":
             return GivenUp(1)
         if lasted_s >= STABLE_S:

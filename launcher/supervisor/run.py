@@ -6,21 +6,18 @@ import asyncio
 import contextlib
 import json
 import os
-import re
 import signal
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
-
-from pydantic import Field
+from typing import Annotated
 
 from launcher.control.requests import BadRequestError, request
 from launcher.control.server import Client, ControlServer
 from launcher.domain.discovery import why_open
 from launcher.domain.participants import other_users
-from launcher.errors import StillRunningError, UnknownNodeError
+from launcher.errors import StillRunningError
 from launcher.events import Hello
 from launcher.logs.files import LogFiles, make_log_folder, prune_runs
 from launcher.logs.session_log import AGENT, DECK, SessionLog
@@ -33,12 +30,12 @@ from launcher.runs.record import RunRecord, exclusively, supervisors
 from launcher.runs.run_folder import RunFolder
 from launcher.runs.shared_domain import Neighbour, free_domain, rival
 from launcher.runs.strays import end_strays, find_strays, forget_ended_runs
-from launcher.spawn_server.spawner import Spawner, SpawnError, SpawnRequest
+from launcher.spawn_server import SpawnRequest
+from launcher.spawn_server.spawner import Spawner, SpawnError
 from launcher.spawn_server.start import SpawnServerHandle
-from launcher.status import LogLine, NodeFault, Severity, Stray, pack_line
-from launcher.supervisor.own_files import OwnFiles
+from launcher.status import Severity, Stray
 from launcher.supervisor.plan import Plan
-from launcher.supervisor.process import Orphans, ProcessLauncher, ProcessScan, helping
+from launcher.supervisor.process import ProcessLauncher, helping, orphans
 from launcher.supervisor.session import Session
 from launcher.supervisor.words import who
 from launcher.wire import MAX_MESSAGE_BYTES, encode, pack
@@ -49,13 +46,7 @@ from text.packing import pack_text
 from text.run_path import OWN_RUN_DIR
 from text.sentences import Words, say
 
-MAX_HISTORY_LINES = 20_000
-MAX_HISTORY_CHARS = 8 << 20
-"""Most characters of a history; of a longer one only the newest lines are sent."""
-MODULE = re.compile(r"nodes\.[a-z][a-z0-9_]*")
-"""A node of Deck."""
-SaidNs = Annotated[int, Field(gt=0, lt=1 << 62, default_factory=time.time_ns)]
-"""Unix time; by default that at which a request arrives."""
+MAX_NS = 1 << 62
 LAST_WORDS = "supervisor"
 """Name of the log with the supervisor's own output, above all its tracebacks."""
 HURRIED_S = 5.0
@@ -101,7 +92,7 @@ def _record(plan: Plan, run_id: str, client: int) -> RunRecord:
         since_s=time.time(),
     )
     nodes = tuple(node.name for node in plan.nodes)
-    return RunRecord(Path(plan.run_dir, run_id), session, nodes, {}, plan.drives)
+    return RunRecord(Path(plan.run_dir, run_id), session, nodes, plan.drives)
 
 
 def _claim(run_folder: RunFolder, plan: Plan) -> bool:
@@ -159,12 +150,14 @@ def _check(problem: str) -> None:
         raise BadRequestError(say("the emergency stop on disk cannot be changed: {problem}", problem=problem))
 
 
-def _newest(lines: Sequence[LogLine], max_chars: int) -> Sequence[LogLine]:
-    for position in range(len(lines) - 1, -1, -1):
-        max_chars -= len(lines[position].text)
-        if max_chars < 0:
-            return lines[position + 1 :]
-    return lines
+def _time_ns(number: object) -> object:
+    if isinstance(number, int) and not 0 < number < MAX_NS:
+        raise ValueError(f"{number} is no time")
+    return number
+
+
+SaidNs = Annotated[int, _time_ns]
+"""Unix time; by default that at which a request arrives."""
 
 
 class Supervisor:
@@ -182,16 +175,14 @@ class Supervisor:
         self._spawner = Spawner(self.info.run_id, spawn_server, self._warn)
         if not plan.warm:
             self._spawner.go_cold()
-        self._spawner.preload(plan.packages)
         self._files = LogFiles(Path(self.info.log_dir), self._log_failed)
         self.control = ControlServer(
-            self, self._hello, lambda: self._log.rings, lambda severity, words: self._log.say(AGENT, severity, words)
+            self._hello, lambda: self._log.rings, lambda severity, words: self._log.say(AGENT, severity, words)
         )
         self._log = SessionLog((node.name for node in plan.nodes), self._files, self.control.lines_came)
-        scan = ProcessScan(Members(self.info.run_id))
-        launcher = ProcessLauncher(plan, self._spawner, self._reaper, scan, self._log)
-        self._own_files = OwnFiles(lambda: self._session.own_files(), self._saved)  # noqa: PLW0108
-        self._session = Session(plan, launcher, self._log, self._status_changed, self._own_files.note)
+        members = Members(self.info.run_id)
+        launcher = ProcessLauncher(plan, self._spawner, self._reaper, members, self._log)
+        self._session = Session(plan, launcher, self._log, self.control.status_changed)
         open_because = why_open(os.environ, plan.session.discovery)
         if open_because:
             self._log.say(DECK, Severity.WARN, open_because)
@@ -199,8 +190,6 @@ class Supervisor:
         self._end = asyncio.Event()
         self._hurry = asyncio.Event()
         self._reason = ""
-        self._record_failed = False
-        self._pids: dict[str, int | None] = {}
 
     async def run(self, stdin: asyncio.StreamReader) -> None:
         self._reaper.install(self._loop)
@@ -214,6 +203,7 @@ class Supervisor:
             self._spawner.close()
             self._files.close()
             return
+        self.control.take_requests_for(self, self._session)
         await self.control.serve(listener)
         self._tell_of_other_users()
         self._session.start()
@@ -224,7 +214,7 @@ class Supervisor:
             asyncio.create_task(self._look_for_strays()),
             asyncio.create_task(self._run_folder.keep(self.control.serve, self._warn)),
             asyncio.create_task(self._watch_owner(stdin)),
-            asyncio.create_task(self._own_files.watch()),
+            asyncio.create_task(self._session.own_files.watch()),
         ]
         await self._end.wait()
         await self._stop_all()
@@ -240,59 +230,23 @@ class Supervisor:
         nodes = tuple(node.status() for node in self._session.nodes.values())
         return Hello(self.info, nodes, self.strays, unguarded=self.unguarded)
 
-    # Requests of clients; where nodes are named, they raise `UnknownNodeError`.
+    # Requests of clients; those about nodes are the session's.
 
     @request
-    def history(self, _client: Client, node: str | None, limit: Annotated[int, Field(ge=0)]) -> list[Any]:
-        """Return the newest lines of one node or of all."""
-        if node is not None and node not in self._log.rings:
-            raise UnknownNodeError(node, self._session.nodes)
-        lines = self._log.newest(node, min(limit, MAX_HISTORY_LINES))
-        return [pack_line(line) for line in _newest(lines, MAX_HISTORY_CHARS)]
-
-    @request
-    def start(self, _client: Client, nodes: tuple[str, ...] = ()) -> None:
-        if not self._end.is_set():
-            self._session.start(nodes)
-
-    @request
-    async def stop(self, _client: Client, nodes: tuple[str, ...] = (), now: bool = False) -> None:
-        """Stop nodes; raises `StillRunningError` if they do not end."""
-        await self._session.stop(nodes, now=now)
-
-    @request
-    def restart(self, _client: Client, nodes: tuple[str, ...] = ()) -> None:
-        if not self._end.is_set():
-            self._session.restart(nodes)
-
-    @request
-    def exchange(self, _client: Client, node: str, run: str | None = None) -> None:
-        """Run this file or module in the place of a node's program, or again that itself (None)."""
-        if run is not None and not (os.path.isabs(run) or MODULE.fullmatch(run)):  # noqa: PTH117
-            raise BadRequestError(say("run: expected an absolute path or a module, found {x!r}", x=run))
-        if not self._end.is_set():
-            self._session.exchange(node, run)
-            self._own_files.look_again()
-
-    def _saved(self, name: str, fault: NodeFault | None) -> None:
-        if not self._end.is_set():
-            self._session.saved(name, fault)
-
-    @request
-    async def stop_strays(self, _client: Client, strays: tuple[Stray, ...]) -> None:
+    async def stop_strays(self, strays: tuple[Stray, ...]) -> None:
         """End these processes that an earlier run left behind."""
         await end_strays(strays)
         self._find_strays()
 
     @request
-    async def emergency_stop(self, _client: Client, said_ns: SaidNs) -> None:
+    async def emergency_stop(self, said_ns: SaidNs = 0) -> None:
         """Give an emergency stop by the file that the nodes watch."""
-        _check(await asyncio.to_thread(self._stop_file.give, Stop(said_ns), BY_SCREEN))
+        _check(await asyncio.to_thread(self._stop_file.give, Stop(said_ns or time.time_ns()), BY_SCREEN))
 
     @request
-    async def emergency_release(self, _client: Client, said_ns: SaidNs) -> None:
+    async def emergency_release(self, said_ns: SaidNs = 0) -> None:
         """Release what was given before this time in the same way."""
-        _check(await asyncio.to_thread(self._stop_file.release, said_ns))
+        _check(await asyncio.to_thread(self._stop_file.release, said_ns or time.time_ns()))
 
     @request
     def shutdown(self, client: Client, now: bool = False) -> None:
@@ -308,6 +262,7 @@ class Supervisor:
     def _finish(self, reason: Words, *, now: bool) -> None:
         if not self._end.is_set():
             self._reason = reason
+            self._session.ends = True
             self._end.set()
         if now:
             self._hurry.set()
@@ -322,8 +277,8 @@ class Supervisor:
             await asyncio.wait(stopping, timeout=HURRIED_S)
         hurry.cancel()
         # Processes that can no longer be attributed to their node.
-        orphans = Orphans(self.info.run_id, self._spawner)
-        left = await end_all(orphans, self._session.clock, HURRIED_S)
+        run_id, spawner = self.info.run_id, self._spawner
+        left = await end_all(lambda: orphans(run_id, spawner), self._session.clock, HURRIED_S)
         if left:
             words = say("{reason}; still running: {who}", reason=self._reason, who=who(left))
             self._reason = words
@@ -370,24 +325,6 @@ class Supervisor:
             # An end that it had begun is carried out as it was asked for.
             self._finish(say("the screen that started it is gone"), now=not self._end.is_set())
 
-    def _status_changed(self, name: str) -> None:
-        status = self._session.nodes[name].status()
-        if self._pids.get(name) != status.pid:
-            self._pids[name] = status.pid
-            self._write_record()
-        self.control.status_changed(name)
-
-    def _write_record(self) -> None:
-        """Record the processes of the nodes, for cleaning up after a sudden end."""
-        try:
-            self._run_folder.note(self._session.processes)
-        except OSError as problem:
-            if not self._record_failed:
-                self._record_failed = True
-                self._log.say(DECK, Severity.ERROR, _no_room(self._run_folder.record.folder, problem))
-        else:
-            self._record_failed = False
-
     def _warn(self, words: Words) -> None:
         self._log.say(DECK, Severity.WARN, words)
 
@@ -415,7 +352,7 @@ class Supervisor:
 
     def _find_strays(self) -> None:
         run_dir = self._run_folder.run_dir
-        strays = find_strays(run_dir)
+        strays = find_strays()
         forget_ended_runs(run_dir, strays)
         if strays != self.strays:
             self.strays = strays

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from launcher.processes.exit import UNSEEN, Exit
 from launcher.processes.table import Process
@@ -13,11 +13,19 @@ from text.sentences import say
 if TYPE_CHECKING:
     # Clients list processes by `who`, and need no pydantic for it.
     from launcher.profile.node import Node, Ready
-    from launcher.supervisor.readiness import Seen
 
 NOT_EXECUTABLE, NOT_FOUND = 126, 127
 NOT_FOUND_WORDS = "deck: command not found"
 """The beginning of a forked process's message that its command does not exist."""
+
+
+class Seen(NamedTuple):
+    """The state of a topic whose condition is not met, or that of a node's lifecycle."""
+
+    types: tuple[str, ...]
+    """The types of its publishers; for a lifecycle the one state."""
+    rate_hz: float | None = None
+    """The rate of its messages; None if it is not required or cannot be measured."""
 
 
 def stopped_words(last: Exit | None) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import signal
 import sys
@@ -16,49 +17,33 @@ from rclpy.utilities import remove_ros_args
 from tf2_ros import Buffer, TransformException, TransformListener
 
 from ros2.ending import until_interrupted
+from ros2.verb import positive_float
+from space.transform import Transform as Place
 from text.output import harmless_output
 
 FIRST_WITHIN_S = 1.0
 SPIN_S = 0.1
-WORDS = (2, 3)
-USAGE = """\
-Usage: tf2_echo source_frame target_frame [echo_rate]
-
-This will echo the transform from the coordinate frame of the source_frame
-to the coordinate frame of the target_frame.
-Note: This is the transform to get data from target_frame into the source_frame.
-Default echo rate is 1 if echo_rate is not given."""
+ABOUT = "Echoes where target_frame is in source_frame: the transform that gets data from the one into the other."
 
 
 def main(argv: list[str]) -> int:
     """Print until interrupted; return the exit code."""
     # As in `tf2_echo a b | head`: it ends with its reader.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    words = remove_ros_args(argv)[1:]
-    rate = _rate(words)
-    if rate is None:
-        print(USAGE)
-        return 1
+    parser = argparse.ArgumentParser(prog="tf2_echo", description=ABOUT)
+    parser.add_argument("source_frame")
+    parser.add_argument("target_frame")
+    parser.add_argument("echo_rate", type=positive_float, nargs="?", default=1.0, help="how often a second")
+    args = parser.parse_args(remove_ros_args(argv)[1:])
     with until_interrupted(), harmless_output():
         rclpy.init(args=argv, signal_handler_options=SignalHandlerOptions.NO)
         node = rclpy.create_node("tf2_echo")
         try:
-            _echo(node, words[0], words[1], rate)
+            _echo(node, args.source_frame, args.target_frame, args.echo_rate)
         finally:
             node.destroy_node()
             rclpy.try_shutdown()
     return 0
-
-
-def _rate(words: list[str]) -> float | None:
-    """Return how often a second; None if the command line makes no sense."""
-    if len(words) not in WORDS:
-        return None
-    try:
-        rate = float(words[2]) if len(words) == max(WORDS) else 1.0
-    except ValueError:
-        return None
-    return rate if rate > 0 else None
 
 
 def _echo(node: Node, source: str, target: str, rate: float) -> None:
@@ -95,46 +80,22 @@ def _print(node: Node, buffer: Buffer, source: str, target: str) -> None:
 def described(transform: Transform) -> str:
     """Return a transform in the lines of the real program."""
     moved, turned = transform.translation, transform.rotation
-    matrix = _matrix(turned.x, turned.y, turned.z, turned.w)
-    angles = _angles(matrix)
-    rows = zip(matrix, (moved.x, moved.y, moved.z), strict=True)
+    place = Place.of((moved.x, moved.y, moved.z), (turned.x, turned.y, turned.z, turned.w))
+    rows = ("".join(f" {number:6.3f}" for number in row) for row in place.matrix().tolist())
     return "\n".join(
         (
-            f"- Translation: {_list(moved.x, moved.y, moved.z)}",
+            f"- Translation: {_list(*place.translation)}",
             f"- Rotation: in Quaternion (xyzw) {_list(turned.x, turned.y, turned.z, turned.w)}",
-            f"- Rotation: in RPY (radian) {_list(*angles)}",
-            f"- Rotation: in RPY (degree) {_list(*map(math.degrees, angles))}",
+            f"- Rotation: in RPY (radian) {_list(*place.rpy_rad)}",
+            f"- Rotation: in RPY (degree) {_list(*map(math.degrees, place.rpy_rad))}",
             "- Matrix:",
-            *(_row(*row, end) for row, end in rows),
-            _row(0.0, 0.0, 0.0, 1.0),
+            *rows,
         )
     )
 
 
 def _list(*numbers: float) -> str:
     return f"[{', '.join(f'{number:.3f}' for number in numbers)}]"
-
-
-def _row(*numbers: float) -> str:
-    return "".join(f" {number:6.3f}" for number in numbers)
-
-
-def _matrix(x: float, y: float, z: float, w: float) -> tuple[tuple[float, float, float], ...]:
-    double = 2.0 / (x * x + y * y + z * z + w * w)
-    return (
-        (1 - double * (y * y + z * z), double * (x * y - z * w), double * (x * z + y * w)),
-        (double * (x * y + z * w), 1 - double * (x * x + z * z), double * (y * z - x * w)),
-        (double * (x * z - y * w), double * (y * z + x * w), 1 - double * (x * x + y * y)),
-    )
-
-
-def _angles(matrix: tuple[tuple[float, float, float], ...]) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw in radians."""
-    down = min(max(matrix[2][0], -1.0), 1.0)
-    if abs(down) == 1.0:
-        return math.atan2(-down * matrix[0][1], -down * matrix[0][2]), -math.asin(down), 0.0
-    roll = math.atan2(matrix[2][1], matrix[2][2])
-    return roll, -math.asin(down), math.atan2(matrix[1][0], matrix[0][0])
 
 
 if __name__ == "__main__":

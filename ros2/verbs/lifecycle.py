@@ -1,14 +1,15 @@
-"""`ros2 lifecycle`: nodes with a lifecycle, their states and transitions."""
+"""`ros2 lifecycle`: the states of nodes with a lifecycle, and their transitions."""
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ros2 import options, rows
+from graph.calls.lifecycle import GET_STATE, GET_STATE_TYPE, SERVICES, ChangeFacts, change, why_not
+from ros2 import naming
 from ros2.joining import joined
-from ros2.naming import absolute, servers
-from ros2.verb import arg, flag, verb
+from ros2.verb import ANSWERS, OF_GRAPH, arg, verb
+from text.i18n import localized
 from text.plain import plain
 
 if TYPE_CHECKING:
@@ -17,118 +18,53 @@ if TYPE_CHECKING:
     from ros2.joining import Guest
 
 NOT_FOUND = "Node not found"
-GET_STATE = "/get_state"
-GET_STATE_TYPE = "lifecycle_msgs/srv/GetState"
-NODE = (
-    options.of_graph, options.answers, arg("node_name", help="Name of the ROS node"), options.hidden("nodes"),
-)  # fmt: skip
-
-
-def nodes(me: Guest, *, hidden: bool) -> list[str]:
-    """Return the full names of the nodes that have a lifecycle, sorted."""
-    return servers(me.node, GET_STATE, GET_STATE_TYPE, hidden=hidden)
-
-
-def find(me: Guest, name: str, *, hidden: bool) -> str:
-    """Return the full name of a node with a lifecycle once it is there, empty if it is not."""
-    full = absolute(name)
-    return full if me.await_until(lambda: full in nodes(me, hidden=hidden)) else ""
-
-
-def state(me: Guest, node: str) -> Any:  # noqa: ANN401 - a message
-    """Ask for the current state, a lifecycle_msgs/State."""
-    from lifecycle_msgs.srv import GetState
-
-    return me.call(f"{node}{GET_STATE}", GetState, node).current_state
-
-
-def transitions(me: Guest, node: str, *, of_all: bool = False) -> list[Any]:
-    """Ask for the transitions out of the current state, or for the whole graph of them."""
-    from lifecycle_msgs.srv import GetAvailableTransitions
-
-    name = "get_transition_graph" if of_all else "get_available_transitions"
-    answer = me.call(f"{node}/{name}", GetAvailableTransitions, node)
-    return list(answer.available_transitions)
-
-
-@verb("lifecycle nodes", "Output a list of nodes with lifecycle", options.of_node_list)
-def list_nodes(args: argparse.Namespace) -> None:
-    """Print them in order."""
-    with joined(args, settled=True) as me:
-        names = nodes(me, hidden=args.all)
-    rows.print_names(names, count=args.count_nodes)
 
 
 @verb(
-    "lifecycle get", "Get lifecycle state for one or more nodes", options.of_graph, options.answers,
-    arg(
-        "node_name", nargs="?",
-        help="Name of the ROS node. If no name is provided, then get the state for all nodes.",
-    ),
-    options.hidden("nodes"),
+    "lifecycle get", "Get lifecycle state for one or more nodes", OF_GRAPH, ANSWERS,
+    arg("node_name", nargs="?", help="Name of the ROS node; without one, the states of all nodes are printed"),
 )  # fmt: skip
 def get(args: argparse.Namespace) -> int | str | None:
     """Print it; a node that does not answer makes the exit code 1, after all others."""
     with joined(args, settled=not args.node_name) as me:
         if args.node_name:
-            node = find(me, args.node_name, hidden=args.hidden)
+            node = me.find(args.node_name, GET_STATE)
             if not node:
                 return NOT_FOUND
-            now = state(me, node)
-            print(f"{plain(now.label)} [{now.id}]")
+            print(_state(me, node))
             return None
-        told = [_print_state(me, node) for node in nodes(me, hidden=args.hidden)]
-    return 0 if all(told) else 1
+        serving = dict(me.node.get_service_names_and_types())
+        code = 0
+        for node in sorted(set(naming.nodes(me.node, hidden=False))):
+            if GET_STATE_TYPE in serving.get(f"{node}/{GET_STATE}", ()):
+                try:
+                    print(f"{node}: {_state(me, node)}")
+                except RuntimeError as error:
+                    print(error, file=sys.stderr)
+                    code = 1
+    return code
 
 
-def _print_state(me: Guest, node: str) -> bool:
-    try:
-        now = state(me, node)
-    except RuntimeError as error:
-        print(error, file=sys.stderr)
-        return False
-    print(f"{node}: {plain(now.label)} [{now.id}]")
-    return True
+def _state(me: Guest, node: str) -> str:
+    from lifecycle_msgs.srv import GetState
 
-
-@verb(
-    "lifecycle list", "Output a list of available transitions", *NODE,
-    flag("-a", "--all", help="Display all existing transitions, not only those available now"),
-)  # fmt: skip
-def list_transitions(args: argparse.Namespace) -> str | None:
-    """Print each with where it begins and where it leads."""
-    with joined(args) as me:
-        node = find(me, args.node_name, hidden=args.hidden)
-        if not node:
-            return NOT_FOUND
-        for each in transitions(me, node, of_all=args.all):
-            print(
-                f"- {plain(each.transition.label)} [{each.transition.id}]\n"
-                f"\tStart: {plain(each.start_state.label)}\n"
-                f"\tGoal: {plain(each.goal_state.label)}"
-            )
-    return None
+    now = me.call(f"{node}/{GET_STATE}", GetState, node).current_state
+    return f"{plain(now.label)} [{now.id}]"
 
 
 @verb(
-    "lifecycle set", "Trigger lifecycle state transition", *NODE,
-    arg("transition", help="The lifecycle transition"),
+    "lifecycle set", "Trigger lifecycle state transition", OF_GRAPH, ANSWERS,
+    arg("node_name", help="Name of the ROS node"), arg("transition", help="The lifecycle transition"),
 )  # fmt: skip
 def set_state(args: argparse.Namespace) -> str | None:
-    """Trigger it by its name or number; unlike in the real tool, a failure is exit code 1."""
-    from lifecycle_msgs.srv import ChangeState
-
+    """Trigger it by its name; unlike in the real tool, a failure is exit code 1."""
+    facts = ChangeFacts()
     with joined(args) as me:
-        node = find(me, args.node_name, hidden=args.hidden)
+        node = me.find(args.node_name, GET_STATE)
         if not node:
             return NOT_FOUND
-        known = [each.transition for each in transitions(me, node)]
-        wanted = [each for each in known if args.transition in (each.label, str(each.id))]
-        if not wanted:
-            lines = "".join(f"\n- {each.label} [{each.id}]" for each in known)
-            return f"Unknown transition requested, available ones are:{lines}"
-        answer = me.call(f"{node}/change_state", ChangeState, node, transition=wanted[0])
-    if not answer.success:
-        return "Transitioning failed"
+        me.carry_out(node, change(args.transition, facts), SERVICES)
+    if why := why_not(node, args.transition, facts, erred=False):
+        return f"Transitioning failed: {localized(why)}"
     print("Transitioning successful")
     return None

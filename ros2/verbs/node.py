@@ -5,15 +5,19 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from ros2 import naming, options, rows
+from ros2 import naming
 from ros2.joining import joined
-from ros2.verb import arg, flag, verb
+from ros2.verb import OF_GRAPH, arg, flag, verb
 
 if TYPE_CHECKING:
     import argparse
 
 
-@verb("node list", "Output a list of available nodes", options.of_node_list)
+@verb(
+    "node list", "Output a list of available nodes", OF_GRAPH,
+    flag("-a", "--all", help="Display all nodes even hidden ones"),
+    flag("-c", "--count-nodes", help="Only display the number of nodes discovered"),
+)  # fmt: skip
 def list_nodes(args: argparse.Namespace) -> None:
     """Print them in order."""
     with joined(args, settled=True) as me:
@@ -24,15 +28,15 @@ def list_nodes(args: argparse.Namespace) -> None:
             "which can have unintended side effects.",
             file=sys.stderr,
         )
-    rows.print_names(names, count=args.count_nodes)
+    naming.print_names(names, count=args.count_nodes)
 
 
 @verb(
-    "node info", "Output information about a node", options.of_graph,
+    "node info", "Output information about a node", OF_GRAPH,
     arg("node_name", help="Node name to request information"),
     flag("--include-hidden", help="Display hidden topics, services, and actions as well"),
 )  # fmt: skip
-def info(args: argparse.Namespace) -> int | str | None:
+def info(args: argparse.Namespace) -> str | None:
     """Print its topics, services and actions, each kind under a title."""
     from rclpy.action import graph as actions
 

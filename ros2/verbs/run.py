@@ -9,8 +9,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ros2.elsewhere import PACKAGES
-from ros2.package_files import CONFIG
-from ros2.packages import NoPackageError, executables, misplaced
+from ros2.packages import CONFIG, NoPackageError, executables, misplaced
 from ros2.verb import arg, verb
 from text.i18n import localized
 from text.sentences import say

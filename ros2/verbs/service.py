@@ -2,62 +2,43 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ros2 import naming, options, rows
-from ros2.filling import filled, read
+from ros2 import naming
 from ros2.joining import SPIN_S, joined
-from ros2.verb import arg, either, flag, verb
+from ros2.messages import filled, load, read
+from ros2.verb import ANSWERS, OF_GRAPH, TYPES, arg, flag, hidden, positive_float, verb
 
 if TYPE_CHECKING:
     import argparse
 
 WORTH_SAYING_S = 1.0
 """A service that is found sooner has been there: there is no daemon that knew it before."""
-HIDDEN = options.hidden("services")
 
 verb(
-    "service list", "Output a list of available services", options.of_graph,
-    flag("-t", "--show-types", help="Additionally show the service type"),
-    flag("-c", "--count-services", dest="count", help="Only display the number of services discovered"), HIDDEN,
-)(partial(rows.listed, "service"))  # fmt: skip
+    "service list", "Output a list of available services", OF_GRAPH, TYPES,
+    flag("-c", "--count-services", dest="count", help="Only display the number of services discovered"),
+    hidden("services"),
+)(partial(naming.list_all, "service"))  # fmt: skip
 verb(
-    "service find", "Output a list of available services of a given type", options.of_graph,
-    arg("type", metavar="service_type", help="Name of the ROS service type to filter for"),
-    flag("-c", "--count-services", dest="count", help="Only display the number found"), HIDDEN,
-)(partial(rows.found, "service"))  # fmt: skip
-verb(
-    "service type", "Output a service's type", options.of_graph,
-    arg("name", metavar="service_name", help="Name of the ROS service to get type (e.g. '/x')"), HIDDEN,
-)(partial(rows.types, "service"))  # fmt: skip
+    "service type", "Output a service's type", OF_GRAPH,
+    arg("name", metavar="service_name", help="Name of the ROS service to get type (e.g. '/x')"),
+)(partial(naming.print_types, "service"))  # fmt: skip
 
 
 @verb(
-    "service call", "Call a service", options.of_node, options.answers,
+    "service call", "Call a service", OF_GRAPH, ANSWERS,
     arg("service_name", help="Name of the ROS service to call to (e.g. '/add_two_ints')"),
     arg("service_type", help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')"),
-    either(
-        arg(
-            "values", nargs="?", default="{}",
-            help="Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}'), "
-            "otherwise the service request will be published with default values",
-        ),
-        flag("--stdin", help="Read values from standard input"),
-    ),
-    arg("-r", "--rate", metavar="N", type=float, help="Repeat the call at a specific rate in Hz"),
+    arg("values", nargs="?", default="{}", help="Values to fill the request with in YAML (e.g. '{a: 1, b: 2}')"),
+    arg("-r", "--rate", metavar="N", type=positive_float, help="Repeat the call at a specific rate in Hz"),
 )  # fmt: skip
-def call(args: argparse.Namespace) -> int | str | None:
+def call(args: argparse.Namespace) -> None:
     """Call it once, or again and again."""
-    if args.rate is not None and args.rate <= 0:
-        raise RuntimeError("rate must be greater than zero")
-    kind = naming.service_class(args.service_type)
-    values = read(sys.stdin.read() if args.stdin else args.values)
-    if values is None:
-        return "The passed value needs to be a dictionary in YAML format"
-    draft = filled(kind.Request, values)
+    kind = load(args.service_type, "srv")
+    draft = filled(kind.Request, read(args.values))
     with joined(args) as me:
         client = me.node.create_client(kind, args.service_name)
         if not client.wait_for_service(timeout_sec=WORTH_SAYING_S):
@@ -68,11 +49,8 @@ def call(args: argparse.Namespace) -> int | str | None:
             request = draft.dated()
             print(f"requester: making request: {request!r}\n", flush=True)
             asked = time.monotonic()
-            future = client.call_async(request)
-            me.finish(future, args.service_name, is_there=client.service_is_ready)
-            if future.result() is None:
-                raise RuntimeError(f"Exception while calling service: {future.exception()!r}")
-            print(f"response:\n{future.result()!r}\n", flush=True)
+            response = me.answer(client.call_async(request), args.service_name, client.service_is_ready)
+            print(f"response:\n{response!r}\n", flush=True)
             if args.rate is None:
-                return None
+                return
             time.sleep(max(0.0, asked + 1 / args.rate - time.monotonic()))

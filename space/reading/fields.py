@@ -126,19 +126,17 @@ def _turned(place: Vector, tree: Any, path: str) -> Transform:  # noqa: ANN401
     return Transform.of(place, (x, y, z, w))
 
 
-def frame(tree: Any, path: str = "header") -> str:  # noqa: ANN401
-    """Return the name of a frame. Raises NotDrawnError."""
-    name = str(field(tree, f"{path}.frame_id")).lstrip("/")
+def frame(tree: Any) -> str:  # noqa: ANN401
+    """Return the name of the frame in the header. Raises NotDrawnError."""
+    name = str(field(tree, "header.frame_id")).lstrip("/")
     if not name:
-        raise NotDrawnError(say("{field} is empty: the publisher names no frame", field=f"{path}.frame_id"))
+        raise NotDrawnError(say("{field} is empty: the publisher names no frame", field="header.frame_id"))
     return name
 
 
-def stamp_s(tree: Any, path: str = "header") -> float | None:  # noqa: ANN401
-    """Return the stamp of a header, None for zero, which means that there is none."""
-    seconds = number(tree, f"{path}.stamp.sec")
-    seconds += number(tree, f"{path}.stamp.nanosec") * NANOSECONDS
-    return seconds or None
+def stamp_s(tree: Any) -> float | None:  # noqa: ANN401
+    """Return the stamp of the header, None for zero, which means that there is none."""
+    return number(tree, "header.stamp.sec") + number(tree, "header.stamp.nanosec") * NANOSECONDS or None
 
 
 def table(tree: Any, path: str, names: str) -> NDArray[np.float32]:  # noqa: ANN401

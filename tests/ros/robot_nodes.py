@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import signal
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from launcher.profile.load import load_profile
@@ -66,7 +67,7 @@ class RobotNodes:
             params = {**spec.params, **OWN.get(name, {})}
             if "port" in params:
                 params["port"] = str(self.folder / str(params["port"]).rpartition("/")[2])
-            arguments = tuple(spec.model_copy(update={"params": params}).ros_args())
+            arguments = tuple(replace(spec, params=params).ros_args())
             self.processes[name] = NodeProcess(spec.run, self.domain, arguments=arguments)
         for name in names:
             self.processes[name].wait_for_words(READY[name])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from launcher.spawn_server.preload import Preload
 
-_ahead = Preload(("nodes",), cold=False)
+_ahead = Preload(cold=False)
 while _ahead.wait_s is not None:
     _ahead.step()
 
-SHARED = _ahead.shared
+SHARED = _ahead

@@ -7,7 +7,7 @@ from typing import Any
 
 
 class ManualClock:
-    """Fits `launcher.clock.Clock`."""
+    """Fits `launcher.processes.stop.Clock`."""
 
     def __init__(self) -> None:
         self._now = 1000.0

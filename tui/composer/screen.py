@@ -11,7 +11,7 @@ from textual.widgets import Static
 from graph.observer.requests import PreparePublisher, Publish
 from robot.topics import LLM_RAW_JSON
 from text import ros2_words
-from text.i18n import N_, _, decimal
+from text.i18n import N_, _
 from text.plain import plain
 from tui import clock
 from tui.actions import bindings
@@ -199,8 +199,6 @@ class ComposerScreen(DeckScreen):
     async def _confirm(self, trail: OutcomeTrail, future: Future[int]) -> None:
         try:
             await asyncio.wait_for(asyncio.wrap_future(future), SENT_WITHIN_S)
-        except asyncio.TimeoutError:
-            trail.failure = _("ROS did not accept it within {n} s").format(n=decimal(f"{SENT_WITHIN_S:g}"))
         except Exception as error:  # noqa: BLE001 - any failure is reported
             trail.failure = reason_words(error)
         if trail.failure:

@@ -12,7 +12,8 @@ from textual.content import Content
 from textual.widgets import Input, Static
 
 from graph.data import GraphUpdate
-from graph.frames.findings import FrameFinding, findings_in
+from graph.findings.finding import GraphFinding
+from graph.frames.findings import findings_in
 from graph.frames.tree import FrameTree, TreeLine
 from text import ros2_words
 from text.i18n import N_, _
@@ -121,7 +122,7 @@ class FramesScreen(DeckScreen):
         self._update: GraphUpdate | None = None
         self.frame_tree: FrameTree = FrameTree(())
         self._lines: list[TreeLine] = []
-        self.findings: list[FrameFinding] = []
+        self.findings: list[GraphFinding] = []
         self._pairs = FramePairs()
         self._relative_to = ""
         """The frame that Enter has marked; empty for the root of the one at the cursor."""
@@ -241,7 +242,7 @@ class FramesScreen(DeckScreen):
 
     @property
     def _wrong(self) -> frozenset[str]:
-        return frozenset(frame for one in self.findings for frame in one.frames)
+        return frozenset(frame for one in self.findings for frame in one.nodes)
 
     def _show(self) -> None:
         # Without its parts it is just being opened or closed.

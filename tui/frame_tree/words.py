@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from rich.cells import cell_len
 
 from graph.data import FrameRow, GraphUpdate, Trouble
+from graph.findings.finding import GraphFinding
 from graph.frames.book import FRAME_TOPICS
-from graph.frames.findings import FrameFinding, by_whom
+from graph.frames.findings import by_whom
 from space.buffer import NoTransformError, TransformBuffer
 from space.transform import Transform
 from text import ros2_words
@@ -152,15 +153,15 @@ def fits(line: TreeLine, parts: Sequence[str]) -> bool:
     return all(part in text for part in parts)
 
 
-def finding_lines(findings: Sequence[FrameFinding], frame: str, width: int) -> list[tuple[str, str]]:
+def finding_lines(findings: Sequence[GraphFinding], frame: str, width: int) -> list[tuple[str, str]]:
     """Return what is wrong, line by line, each with its meaning; what is about `frame` first."""
     if not findings:
         return [(_("✓ nothing is wrong with the frames"), "good")]
     count = len(findings)
     lines = [(ngettext("{n} finding", "{n} findings", count).format(n=count), "bad")]
-    for one in sorted(findings, key=lambda one: frame not in one.frames)[:SHOWN]:
-        lines += [(line, "bad") for line in _wrapped("✗ ", localized(one.text), width)]
-        lines += [(line, "") for line in _wrapped("  → ", localized(one.advice), width)]
+    for one in sorted(findings, key=lambda one: frame not in one.nodes)[:SHOWN]:
+        lines += [(line, "bad") for line in _wrapped("✗ ", localized(one.what), width)]
+        lines += [(line, "") for line in _wrapped("  → ", localized(one.mend), width)]
     if count > SHOWN:
         lines.append((_("… and {n} more").format(n=count - SHOWN), ""))
     return lines

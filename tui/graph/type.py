@@ -61,7 +61,7 @@ class TypePane(GraphPane):
             # Reading a type imports its package and those of its fields, which takes time.
             await asyncio.to_thread(lambda: list(field_rows(name)))
         except UnknownTypeError as error:
-            failure = error.reason
+            failure = error.words
         if name == self.name_shown:
             self._failure, self._loaded = failure, "" if failure else name
             self.redraw()
@@ -106,7 +106,7 @@ def field_rows(type_name: str, at: str = "") -> Iterator[Row]:
             try:
                 yield from field_rows(field.message, path)
             except UnknownTypeError as error:
-                yield heading(f"{indent}  {plain(localized(error.reason), LONGEST)}")
+                yield heading(f"{indent}  {plain(localized(error.words), LONGEST)}")
         for constant in part.constants:
             value = plain(typed(constant.value), LONGEST)
             cells = Cell(indent + plain(constant.name), "dim"), Cell(f"= {value}", "dim")

@@ -51,7 +51,7 @@ def columns_for(width: int, longest_node: int) -> LogColumns:
     if width < 40:
         return LogColumns(0, 1, min(longest_node, 6))
     if width < 70:
-        return LogColumns(8, 1, min(longest_node, 10))
+        return LogColumns(8, 1, min(longest_node, width // 4))
     if width < 140:
         return LogColumns(8, WORD_CELLS, min(longest_node, 20))
     return LogColumns(12, WORD_CELLS, min(longest_node, 32))
@@ -100,10 +100,17 @@ def gutter_texts(entry: LogEntry, columns: LogColumns) -> tuple[str, str, str]:
     when = f" {clock(entry.time_s, columns.time)} " if columns.time else " "
     word = "⋯" if entry.skipped else WORDS[entry.rank]
     word = f"{word[: columns.word].ljust(columns.word)} " if columns.word else ""
-    name, cells = plain(entry.node), columns.node
-    if cell_len(name) > cells > 1:
-        name = set_cell_size(name, cells - 1) + "…"
-    return when, word, f"{set_cell_size(name, cells)} " if cells else ""
+    cells = columns.node
+    return when, word, f"{set_cell_size(short_name(entry.node, cells), cells)} " if cells else ""
+
+
+def short_name(node: str, cells: int) -> str:
+    """Cut a name in its middle: names of one robot often differ only at their end."""
+    name = plain(node)
+    if cell_len(name) <= cells or cells < 2:
+        return name
+    end = (cells - 1) // 3
+    return set_cell_size(name, cells - 1 - end) + "…" + name[len(name) - end :]
 
 
 def exported(entries: Sequence[LogEntry], index: LogIndex) -> list[str]:

@@ -60,6 +60,10 @@ class BrainPanel(Panel):
     weight = 2
     across_below = 80
 
+    def useful(self, rows: int) -> int:
+        """State, the last answer and the budget."""
+        return min(rows, 3)
+
     def followed(self) -> set[str]:
         """Every report: several nodes write there."""
         return {BRAIN_STATE}

@@ -59,7 +59,7 @@ class CameraPanel(Panel):
         if trouble is not None:
             self._refused = False
             row = row_of(update, CAMERA)
-            words = lost_words() if row and "raw" in row.facts else None
+            words = lost_words() if row and row.raw_from_afar else None
             view.show_words(*(words or (trouble_words(trouble, age_s), detail)))
             return
         if sample is None:

@@ -1,13 +1,11 @@
-"""The Head panel: where the head looks, from above and from the side, and what LLM commands told it."""
+"""The Head panel: where the head looks, as a sight on a field, and what LLM commands told it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import Any
 
 from graph.data import GraphUpdate
 from robot.joints import HEAD_PAN, HEAD_TILT
@@ -17,11 +15,13 @@ from text.i18n import N_, _
 from text.nested import read_json
 from text.plain import plain
 from tui.panels.panel import Joints, Panel, has_joints, joint_number, trouble_of
-from tui.widgets.canvas import Canvas, Point
+from tui.widgets.canvas import Canvas, Point, rectangle
 from tui.widgets.drawing import Drawing, Ink, Line, beside, cells_of, fit
 
 LIMIT_DEG = 90.0
 SAME_WITHIN_DEG = 0.5
+MARK = 8.0
+"""Dots on a side of the square around where it is commanded to look."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ def head_in(value: Mapping[str, Any]) -> HeadReading | None:
     return HeadReading(pan, tilt)
 
 
-CAPTION_FROM = 10
 DRAWN_FROM = (22, 6)
+"""Columns and lines from which on the field is drawn."""
 
 
 class HeadView(Drawing):
@@ -117,10 +117,7 @@ class HeadView(Drawing):
         words = self._in_words(numbers, state, width)
         if width < DRAWN_FROM[0] or height < DRAWN_FROM[1]:
             return words
-        titles = [Ink(fit(title, width // 2), "muted") for title in (_("from above"), _("from right"))]
-        caption = [titles] if height >= CAPTION_FROM else []
-        rows = max(0, height - len(words) - len(caption))
-        return [*caption, *self._views(pose, width, rows), *words]
+        return [*_field(pose, self._told, width, max(0, height - len(words))), *words]
 
     def _in_words(self, numbers: Line, state: Line, width: int) -> list[Line]:
         told = self._told_lines(width)
@@ -150,46 +147,34 @@ class HeadView(Drawing):
             return [beside(lines[0], lines[1], width)]
         return [[Ink(fit(line[0].text, width), "muted")] for line in lines]
 
-    def _views(self, pose: HeadReading, width: int, rows: int) -> list[Line]:
-        columns = (width - 2) // 2
-        above, side = Canvas(columns, rows), Canvas(columns, rows)
-        radius = min(above.width / 2, above.height / 2) - 2
-        told = self._told
-        dial = Dial(above, (above.width / 2, (above.height + radius) / 2), radius, 90.0)
-        dial.draw(pose.pan_deg, None if told is None else told.pan_deg, "accent")
-        dial = Dial(side, ((side.width - radius) / 2, side.height / 2), radius, 0.0)
-        dial.draw(pose.tilt_deg, None if told is None else told.tilt_deg, "second")
-        gap = Ink(" " * (width - 2 * columns))
-        return [[*one, gap, *other] for one, other in zip(above.lines(), side.lines(), strict=True)]
 
+def _field(pose: HeadReading, told: HeadReading | None, columns: int, rows: int) -> list[Line]:
+    """Draw all that the head can turn to, straight ahead in the middle, and a cross where it looks."""
+    dots = Canvas(columns, rows)
+    reach = min(dots.width, dots.height) / 2 - 1
+    middle, centre = dots.width / 2, dots.height / 2
+    left, right, top, bottom = middle - reach, middle + reach, centre - reach, centre + reach
 
-class Dial(NamedTuple):
-    """Half a circle of dots around a centre; `zero_deg` is the direction of 0, 90 is upwards."""
+    def at(pan_deg: float, tilt_deg: float) -> Point:
+        across, up = (max(-1.0, min(1.0, degrees / LIMIT_DEG)) for degrees in (pan_deg, tilt_deg))
+        return middle - reach * across, centre - reach * up
 
-    dots: Canvas
-    centre: Point
-    radius: float
-    zero_deg: float
-
-    def draw(self, degrees: float, told_deg: float | None, look: str) -> None:
-        x, y = np.transpose([self._at(step, 1.0) for step in range(-90, 91, 15)])
-        self.dots.dots(x, y, "muted")
-        if told_deg is not None and math.isfinite(told_deg):
-            self.dots.line(self._at(told_deg, 0.75), self._at(told_deg, 1.1), "strong")
-        if math.isfinite(degrees):
-            shown = max(-LIMIT_DEG, min(LIMIT_DEG, degrees))
-            self.dots.line(self._at(shown, 0.0), self._at(shown, 0.95), look)
-            for turn in (-20.0, 20.0):
-                self.dots.line(self._at(shown, 0.95), self._at(shown + turn, 0.7), look)
-
-    def _at(self, degrees: float, share: float) -> Point:
-        angle = math.radians(self.zero_deg + degrees)
-        reach = self.radius * share
-        return self.centre[0] + reach * math.cos(angle), self.centre[1] - reach * math.sin(angle)
+    dots.outline([(left, top), (right, top), (right, bottom), (left, bottom)], "muted")
+    for step in (0.0, math.pi / 2):
+        end = reach * math.cos(step), reach * math.sin(step)
+        dots.line((middle - end[0], centre - end[1]), (middle + end[0], centre + end[1]), "muted", dash=(1, 3))
+    if told is not None and told.is_known:
+        dots.outline(rectangle(at(told.pan_deg, told.tilt_deg), MARK, MARK, 0.0), "strong")
+    if pose.is_known:
+        x, y = at(pose.pan_deg, pose.tilt_deg)
+        dots.line((x, top), (x, bottom), "accent")
+        dots.line((left, y), (right, y), "second")
+        dots.fill(rectangle((x, y), MARK / 2, MARK / 2, 0.0), "strong")
+    return dots.lines()
 
 
 class HeadPanel(Panel):
-    """Pan and tilt, from above and from the side."""
+    """Pan and tilt."""
 
     view = HeadView
     title = N_("Head")

@@ -82,6 +82,10 @@ class Panel(Vertical):
         fits = (title for title in titles if cell_len(title) <= room)
         self.border_title = Content(next(fits, titles[-1]))
 
+    def useful(self, rows: int) -> int:
+        """Return of how many of these rows it has any use."""
+        return rows
+
     def watched(self) -> set[str]:
         """Return the topics whose newest message is needed."""
         return set()

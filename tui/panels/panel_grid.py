@@ -193,14 +193,28 @@ def paged(rows: Sequence[Row], height: int, frame: int) -> list[list[Row]]:
 
 
 def heights(rows: Sequence[Row], height: int, frame: int) -> list[int]:
-    """Divide the lines of a page: each row gets its minimum, and the rest is shared by weight."""
+    """Divide the lines of a page: each row gets its minimum, and the rest is shared by weight.
+
+    What a row has no use for goes to others, the heaviest first.
+    """
     weights = [max(panel.weight for panel in row) for row in rows]
     spare = max(0, height - sum(frame + least(row) for row in rows))
     shares = [spare * weight // sum(weights) for weight in weights]
-    if shares:
-        shares[weights.index(max(weights))] += spare - sum(shares)
-    return [frame + least(row) + share for row, share in zip(rows, shares, strict=True)]
+    lines = [useful(row, least(row) + share) for row, share in zip(rows, shares, strict=True)]
+    left = max(0, height - sum(frame + each for each in lines))
+    by_weight = sorted(range(len(rows)), key=lambda at: -weights[at])
+    for at in by_weight:
+        more = useful(rows[at], lines[at] + left) - lines[at]
+        lines[at], left = lines[at] + more, left - more
+    for at in by_weight[:1]:
+        lines[at] += left
+    return [frame + each for each in lines]
 
 
 def least(row: Row) -> int:
     return max(panel.least for panel in row)
+
+
+def useful(row: Row, lines: int) -> int:
+    """Return of how many of these lines a row has any use."""
+    return max(panel.useful(lines) for panel in row)

@@ -186,14 +186,17 @@ class VoiceView(Drawing):
             return [[*lead, Ink(fit(newest.what.words, room).rstrip(), _body(newest.what))]]
         lines: list[Line] = []
         for saying in reversed(self.sayings):
-            lines[:0] = self._saying_lines(saying, width)
             if len(lines) >= height:
-                return lines[-height:]
+                break
+            lines[:0] = self._saying_lines(saying, width, height - len(lines))
         return lines
 
-    def _saying_lines(self, saying: Saying, width: int) -> list[Line]:
+    def _saying_lines(self, saying: Saying, width: int, most: int) -> list[Line]:
+        """Return who said what, in at most so many lines: its end is left out rather than who said it."""
         lead, room = self._lead(saying, width)
-        first, *rest = folded(saying.what.words, room)
+        first, *rest = shown = folded(saying.what.words, room)
+        if len(shown) > most:
+            first, *rest = [*shown[: most - 1], fit(f"{shown[most - 1]} {shown[most]}", room)]
         body = _body(saying.what)
         indent = Ink(" " * (width - room))
         return [[*lead, Ink(first, body)], *([indent, Ink(text, body)] for text in rest)]
@@ -223,7 +226,7 @@ class VoicePanel(Panel):
     view = VoiceView
     title = N_("Voice")
     least = 2
-    weight = 2
+    weight = 3
     across_below = 80
 
     def __init__(self) -> None:

@@ -250,6 +250,10 @@ class WheelsPanel(Panel):
     weight = 4
     across_below = 80
 
+    def useful(self, rows: int) -> int:
+        """Words take four; from above, a chassis that is higher than this says no more."""
+        return min(rows, DRAWN_FROM[1] + 4) if rows >= DRAWN_FROM[1] else min(rows, self.least)
+
     def __init__(self) -> None:
         super().__init__()
         self._joints = Joints(WHEEL_COMMANDS, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))

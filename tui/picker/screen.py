@@ -13,6 +13,7 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from launcher.errors import LauncherError
+from launcher.profile.defaults import shown
 from launcher.profile.panels import PANELS
 from text.i18n import N_, _, localized, ngettext, pick
 from text.plain import plain
@@ -415,7 +416,7 @@ def _about_lesson(lesson: Lesson) -> Content:
     known = ((panel, PANELS.get(panel)) for panel in lesson.panels)
     shows = [_(entry.title) if entry else plain(panel) for panel, entry in known]
     lines.append(_field(_("Shows"), ", ".join([*shows, _("log")])))
-    lines.append(_field(_("File"), plain(str(lesson.path))))
+    lines.append(_field(_("File"), plain(shown(lesson.path))))
     return Content("\n").join(lines)
 
 

@@ -14,7 +14,7 @@ from textual.content import Content
 from textual.widgets import Static
 
 from graph.data import EndpointInfo, TopicRow
-from graph.qos_compatibility import LEASE, LIVELINESS, Mismatch, mismatches
+from graph.qos import LEASE, LIVELINESS, Mismatch, mismatches
 from text.i18n import _, localized, ngettext
 from text.plain import plain
 from tui.widgets.drawing import Ink, Line, fit

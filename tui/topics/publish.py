@@ -289,9 +289,6 @@ class PublishDialog(Dialog[None]):
         """Wait for the result; if there is none, say why."""
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), DONE_WITHIN_S)
-        except asyncio.TimeoutError:
-            words = _("ROS did not accept it within {n} s").format(n=decimal(f"{DONE_WITHIN_S:g}"))
-            self.tell(lambda: words, "bad")
         except Exception as error:  # noqa: BLE001 - any failure is reported
             reason = reason_words(error)
             self.tell(lambda: _("Not sent: {reason}").format(reason=reason), "bad")

@@ -105,7 +105,7 @@ def state_text(row: TopicRow) -> str:
         return _("· waiting")
     if row.trouble is Trouble.QUIET:
         return _("· {age} ago").format(age=age_text(row.age_s))
-    if "types" in row.facts:
+    if len(row.type_names) > 1:
         return _("! types differ")
     return _("! {detail}").format(detail=plain(row.detail, STEP)) if row.detail else ""
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from graph.data import EndpointInfo, TopicRow, Trouble
 from text.figures import elapsed
-from text.i18n import N_, _, localized, ngettext
+from text.i18n import N_, _, localized
 from text.plain import plain
 
 if TYPE_CHECKING:
-    from graph.qos_compatibility import Mismatch
+    from graph.qos import Mismatch
 
 LONGEST = 400
 SHOWN_NODES = 4
@@ -55,8 +55,8 @@ def lost_words() -> tuple[str, str]:
 def advice(row: TopicRow) -> tuple[str, str]:
     """Why the topic cannot be shown, and the fix; both empty if there is no trouble."""
     if row.trouble is None:
-        return "", _remark(row)
-    if row.trouble is Trouble.QUIET and "raw" in row.facts:
+        return "", plain(localized(row.detail), LONGEST)
+    if row.trouble is Trouble.QUIET and row.raw_from_afar:
         return lost_words()
     if row.trouble is Trouble.QUIET and not row.publishers:
         sent = _("It has sent nothing yet.") if row.age_s is None else no_data_words(row.age_s)
@@ -65,58 +65,18 @@ def advice(row: TopicRow) -> tuple[str, str]:
 
 
 def _way_out(row: TopicRow, trouble: Trouble) -> str:
-    facts = row.facts
-    if "recorded" in facts:
-        return _("Nothing of it was recorded around here: go on, or jump.")
-    if trouble is Trouble.NO_PUBLISHER:
+    if trouble is Trouble.NO_PUBLISHER and not row.recorded:
         return _("Start the node that publishes it, or look for a misspelt or remapped name.")
-    if trouble is Trouble.QUIET:
+    if trouble is Trouble.QUIET and not row.recorded:
         return _("Publishers are there: {nodes}. Look at their logs.").format(
             nodes=names(row.published_by) or row.publishers
         )
-    if trouble is Trouble.UNKNOWN_TYPE and "package" in facts:
-        return _how_to_install(facts).format(**facts)
-    if trouble is Trouble.QOS_MISMATCH and "policy" in facts:
-        return misfit_words(facts)
     return localized(row.detail)
 
 
 def pair_words(pair: Mismatch) -> str:
     """Who does not hear whom, and the two fixes."""
     return plain(f"{localized(pair.what)} {localized(pair.mend)}", LONGEST)
-
-
-def misfit_words(facts: Mapping[str, str]) -> str:
-    """The first pair in a sentence and the number of further ones, from a trouble's facts."""
-    # Not needed for the first frame.
-    from graph.qos_compatibility import Mismatch
-
-    words = pair_words(Mismatch(**{name: facts[name] for name in Mismatch.__match_args__}))
-    more = int(facts.get("more", "0"))
-    if not more:
-        return words
-    return f"{words} {ngettext('… and {n} more pair', '… and {n} more pairs', more).format(n=more)}"
-
-
-def _how_to_install(facts: Mapping[str, str]) -> str:
-    if "pip" in facts:
-        return _(
-            "{type}: install {package} by `pip install {pip}`, `apt install {apt}` or `pixi add "
-            "{pixi}`, or source the workspace that has it."
-        )
-    if "apt" in facts:
-        return _(
-            "{type}: install {package} by `apt install {apt}` or `pixi add {pixi}`, or source the "
-            "workspace that has it."
-        )
-    return _("{type}: install the package {package}, or source the workspace that has it.")
-
-
-def _remark(row: TopicRow) -> str:
-    if "types" in row.facts:
-        words = _("The endpoints use different types: {types}; shown is {shown}.")
-        return plain(words.format(**row.facts), LONGEST)
-    return plain(row.detail, LONGEST)
 
 
 def listeners(row: TopicRow | None) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TypeAlias
 
 from graph.messages.making import FieldError
@@ -28,11 +29,13 @@ def wrong_words(error: Wrong) -> str:
     place = place_of(error)
     line = "" if place is None else _("line {line}").format(line=place.line)
     field = error.field if isinstance(error, FieldError) else ""
-    message = error.reason if isinstance(error, UnknownTypeError) else error.message
+    message = error.words if isinstance(error, UnknownTypeError) else error.message
     return plain(": ".join(part for part in (line, field, localized(message)) if part), LONGEST)
 
 
 def reason_words(error: Exception) -> str:
     if isinstance(error, (YamlError, FieldError, UnknownTypeError)):
         return wrong_words(error)
+    if isinstance(error, asyncio.TimeoutError):
+        return _("ROS did not accept it in time")
     return plain(localized(reason_of(error)), LONGEST)

@@ -8,9 +8,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
-from launcher.profile.node import Document, RosName, Texts, TypeName, refuse
+from launcher.parts import RosName, Texts, TypeName, refuse
 from launcher.profile.steps.expressions import PLACE, written
 from text.sentences import say
 
@@ -61,6 +61,12 @@ Range = Annotated[tuple[Number, Number], Field(strict=False)]
 Pattern = Annotated[str, BeforeValidator(_pattern)]
 Seconds = Annotated[float, Field(gt=0, le=LONGEST_S)]
 Times = Annotated[int, Field(ge=1, le=1000)]
+
+
+class Document(BaseModel):
+    """Base of what only the client and the judge read of a profile: no unknown keys, no silent conversions."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
 
 class CheckDocument(Document):

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from launcher.profile.steps.expressions import Drawn
     from launcher.profile.steps.model import ValueDocument
 

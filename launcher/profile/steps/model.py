@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
-from launcher.profile.node import Document, Texts, refuse
-from launcher.profile.steps.checks import Check
+from launcher.parts import Texts, refuse
+from launcher.profile.steps.checks import Check, Document
 from text.sentences import say
 
 STEP_ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")

@@ -1,4 +1,4 @@
-"""Frames of real publishers, and the reader of their messages against rclpy's own."""
+"""Frames of real publishers."""
 
 from __future__ import annotations
 
@@ -6,15 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from geometry_msgs.msg import TransformStamped
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from rclpy.serialization import deserialize_message, serialize_message
-from tf2_msgs.msg import TFMessage
 
 from graph.data import FrameRow
-from graph.frames.reading import TF_MESSAGE, TransformReader
-from graph.messages.definitions import decoder
+from graph.frames.book import TF_MESSAGE
 from tests.ros.observing import Peer, Watcher
 from tests.unit.transform_messages import Sent
 from tests.waiting import wait_until
@@ -94,51 +88,3 @@ def test_two_publishers_on_both_topics_are_told_apart(peers: tuple[Peer, Peer], 
     assert camera.newest.transform.translation == (0.15, 0.0, 0.25)
     driver.withdraw("/tf")
     arm.withdraw("/tf_static")
-
-
-NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12)
-NUMBERS = st.floats(width=64)
-
-
-@st.composite
-def messages(draw: st.DrawFn) -> TFMessage:
-    transforms = []
-    for _ in range(draw(st.integers(0, 6))):
-        one = TransformStamped(child_frame_id=draw(NAMES))
-        one.header.frame_id = draw(NAMES)
-        one.header.stamp.sec = draw(st.integers(-(2**31), 2**31 - 1))
-        one.header.stamp.nanosec = draw(st.integers(0, 2**32 - 1))
-        for axis in "xyz":
-            setattr(one.transform.translation, axis, draw(NUMBERS))
-        for axis in "xyzw":
-            setattr(one.transform.rotation, axis, draw(NUMBERS))
-        transforms.append(one)
-    return TFMessage(transforms=transforms)
-
-
-def told(reader: TransformReader, raw: bytes) -> list[Any]:
-    names, found = reader.read(raw)
-    return [(*pair, *fields[:2], *map(repr, fields[4:])) for pair, fields in zip(names, found, strict=True)]
-
-
-def expected(message: TFMessage) -> list[Any]:
-    return [
-        (
-            one.header.frame_id,
-            one.child_frame_id,
-            one.header.stamp.sec,
-            one.header.stamp.nanosec,
-            *(repr(getattr(one.transform.translation, axis)) for axis in "xyz"),
-            *(repr(getattr(one.transform.rotation, axis)) for axis in "xyzw"),
-        )
-        for one in message.transforms
-    ]
-
-
-@settings(max_examples=150, deadline=None)
-@given(st.lists(messages(), min_size=1, max_size=4))
-def test_any_message_is_read_as_rclpy_reads_it(sent: list[TFMessage]) -> None:
-    reader = TransformReader(decoder(TF_MESSAGE))
-    for message in (*sent, *reversed(sent)):
-        raw = bytes(serialize_message(message))
-        assert told(reader, raw) == expected(message) == expected(deserialize_message(raw, TFMessage))

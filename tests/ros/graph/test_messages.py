@@ -28,8 +28,9 @@ from tf2_msgs.msg import TFMessage
 
 from graph.calls.parameters_file import dump
 from graph.data import ParameterRow
+from graph.distro import distro
 from graph.messages.browse import Constant, definition, interfaces
-from graph.messages.definitions import TypeText, bag_decoder, decoder, jazzy
+from graph.messages.definitions import TypeText, bag_decoder, decoder, typestore
 from graph.messages.definitions import definition as bag_definition
 from graph.messages.fields import to_tree
 from graph.messages.making import FieldError, draft, to_message
@@ -156,7 +157,7 @@ def test_pictures_are_read_the_short_way_as_by_rclpy(tree: dict[str, Any], cut: 
         (load_message, "os;/msg/x", "is not the name of a type"),
         (load_message, "json/msg/Thing", "package json is installed and has no messages"),
         (load_service, "std_msgs/srv/Trigger", "package std_msgs is installed and has no services"),
-        (load_service, "foo_srvs/srv/Bar", "'apt install ros-jazzy-foo-srvs'"),
+        (load_service, "foo_srvs/srv/Bar", f"'apt install ros-{distro()}-foo-srvs'"),
     ],
 )
 def test_a_type_that_cannot_be_had_says_why(load: Any, name: str, word: str) -> None:
@@ -218,8 +219,8 @@ def test_the_tree_is_that_of_the_live_message(message: Any) -> None:
     assert list(tree) == list(to_tree(message))
 
 
-@pytest.mark.parametrize("name", sorted(jazzy().fielddefs))
-def test_every_type_of_jazzys_is_told_to_a_bag_so_that_it_is_understood(name: str) -> None:
+@pytest.mark.parametrize("name", sorted(typestore().fielddefs))
+def test_every_type_of_this_ros_is_told_to_a_bag_so_that_it_is_understood(name: str) -> None:
     bag_decoder(TypeText(name, bag_definition(name)))
 
 

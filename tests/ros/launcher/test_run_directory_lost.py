@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import stat
 from pathlib import Path
@@ -53,10 +52,3 @@ async def test_what_is_removed_is_made_again_and_told(start: Launch, tmp_path: P
     assert other.nodes["node"].pid == pid
     assert any("is gone" in line.text for line in await other.history(None, 100))
     await other.aclose()
-    await client.restart("node")
-    await until(lambda: client.nodes["node"].pid not in (pid, None), "another process")
-    record = json.loads((folder / "session.json").read_text())
-    await until(
-        lambda: json.loads((folder / "session.json").read_text())["processes"]["node"][0] == client.nodes["node"].pid,
-        lambda: f"its new process in the record {record}",
-    )

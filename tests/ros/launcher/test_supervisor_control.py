@@ -105,26 +105,6 @@ async def test_a_client_of_another_version_is_told_so(start: Launch) -> None:
     old.writer.close()
 
 
-@pytest.mark.parametrize("start_of_a_line", [b"", b'{"deck": '])
-async def test_the_owner_attaches_past_500_connections_that_say_nothing(
-    start: Launch, start_of_a_line: bytes
-) -> None:
-    client = await start(NODE)
-    folder = run_dir() / client.session.run_id
-    half_open = []
-    try:
-        for _connection in range(500):
-            half_open.append(await asyncio.to_thread(connect, folder))
-            half_open[-1].send(start_of_a_line)
-        other = await asyncio.wait_for(attach(), 20)
-        await other.restart("node")
-        await other.aclose()
-        await running_pid(client, "node")
-    finally:
-        for connection in half_open:
-            connection.close()
-
-
 async def test_every_client_sees_what_another_does(start: Launch) -> None:
     client = await start(NODE)
     await running_pid(client, "node")

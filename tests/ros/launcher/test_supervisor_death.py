@@ -229,7 +229,7 @@ def test_a_robot_in_a_container_is_alive_though_its_supervisor_has_another_pid_i
             assert robot.stdout is not None
             run_id = json.loads(robot.stdout.readline())["session"]["run_id"]
             assert of_run(run_id), "they are seen from out here"
-            assert not [stray for stray in find_strays(tmp_path) if stray.run_id == run_id]
+            assert not [stray for stray in find_strays() if stray.run_id == run_id]
             found = [one.domain for one in supervisors_everywhere() if one.run_id == run_id]
             assert found == [ros_domain]
             assert run_id not in [one.run_id for one in supervisors()], "nothing can be sent to it"

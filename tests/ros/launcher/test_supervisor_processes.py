@@ -46,6 +46,11 @@ except KeyboardInterrupt: sys.exit(0)
 """
 
 
+def _is_child(pid: int, parent: int) -> bool:
+    process = read_process(pid)
+    return process is not None and process.parent == parent
+
+
 async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -> None:
     client = await start({"one": {"exec": SLEEPER}, "two": {"exec": SLEEPER}})
     for name in client.nodes:
@@ -53,7 +58,8 @@ async def test_each_node_leads_a_session_and_a_group_of_its_own(start: Launch) -
         process = read_process(pid)
         assert process is not None
         assert (process.group, process.session) == (pid, pid)
-        assert process.parent == client.session.supervisor_pid
+        # The process that has forked it tells of it first, and then ends.
+        await until(partial(_is_child, pid, client.session.supervisor_pid), "a child of the supervisor")
         assert (read_marks(pid) or {}).get("DECK_RUN_ID") == client.session.run_id
 
 
@@ -98,30 +104,6 @@ async def test_a_node_that_is_interrupted_while_it_starts_ends_without_a_word(st
         await client.start("node")
     text = "\n".join(line.text for line in await client.history("node", 1000))
     assert "Traceback" not in text
-
-
-async def test_a_killed_node_returns(start: Launch) -> None:
-    client = await start({"node": {"exec": SLEEPER, "restart": "on-failure"}})
-    first = await running_pid(client, "node")
-    kill(first, signal.SIGKILL)
-    status = await until_state(client, "node", NodeState.BACKOFF)
-    assert (status.signal, status.pid) == ("SIGKILL", None)
-    second = await running_pid(client, "node")
-    assert second != first
-    assert client.nodes["node"].restarts == 1
-
-
-async def test_restarts_at_the_same_time_start_one_process(start: Launch, tmp_path: Path) -> None:
-    starts = tmp_path / "starts"
-    text = f"open({str(starts)!r}, 'a').write('x'); import time; time.sleep(1000)"
-    client = await start({"node": {"exec": script(text)}})
-    first = await running_pid(client, "node")
-    await until(starts.exists, "the first start")
-    await asyncio.gather(client.restart("node"), client.restart("node"), client.restart("node"))
-    await until(lambda: client.nodes["node"].pid not in (first, None), "another process")
-    await until(lambda: len(starts.read_text()) == 2, "the second start")
-    await client.stop("node")
-    assert starts.read_text() == "xx"
 
 
 WAYS = {"group": "", "session": "session", "daemon": "session twice"}

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from launcher.processes.members import proportional_memory
 from launcher.processes.table import NODE_MARK, RUN_MARK, command_line, processes, read_marks, read_process
-from launcher.processes.usage import proportional_memory
 from launcher.status import NodeState, Severity
 from tests.ros.supervised import SLEEPER, Launch, alive, running_pid, said, until_state
 from tests.waiting import until

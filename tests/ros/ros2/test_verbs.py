@@ -34,7 +34,7 @@ def out(*words: str) -> str:
 
 def test_lists_of_the_graph() -> None:
     assert out("node", "list") == "/turtle\n"
-    assert out("node", "list", "-c", "--no-daemon", "--spin-time", "3") == "1\n"
+    assert out("node", "list", "-c", "--no-daemon") == "1\n"
     names = out("topic", "list").splitlines()
     assert names == sorted(names)
     assert {"/ai_command", "/distance", "/image", "/rosout", "/wheels", "/word"} <= set(names)
@@ -90,9 +90,11 @@ def test_echo() -> None:
         "name:\n- left\n- right\nposition: []\nvelocity:\n- 1.5\n- -0.25\neffort: []\n---\n"
     )
     assert out("topic", "echo", "--once", "/wheels", "--field", "velocity[1]") == "-0.25\n---\n"
-    assert out("topic", "echo", "--once", "/wheels", "--flow-style").endswith(
-        "  frame_id: base_link\nname: [left, right]\nposition: []\nvelocity: [1.5, -0.25]\neffort: []\n---\n"
-    )
+    filtered = out("topic", "echo", "--once", "/wheels", "--filter", "m.velocity[1] < 0 and 'left' in m.name")
+    assert "velocity:\n- 1.5\n" in filtered
+    unknown = typed("topic", "echo", "/wheels", "--filter", "m.speed > 1")
+    assert (unknown.code, unknown.out) == (2, "")
+    assert unknown.err.startswith("Invalid filter expression 'm.speed > 1': column 1: m.speed: no such field")
     cut = out("topic", "echo", "--once", "/image", "-l", "2", "--qos-reliability", "best_effort")
     assert cut.endswith("data:\n- 0\n- 0\n- '...'\n---\n")
     assert "encoding: rg...\n" in cut
@@ -117,11 +119,6 @@ def test_pub(world: World) -> None:
     assert said == "publisher: beginning loop\n" + one.format(1) + one.format(2)
     wait_until(lambda: len(world.heard) >= 2, "both messages")
     assert [message.data for message in world.heard] == ["вперед"] * 2
-    waited = typed("topic", "pub", "--once", "/x", "std_msgs/msg/String", "--max-wait-time-secs", "0.1")
-    assert (waited.code, waited.err) == (
-        1,
-        "Timed out waiting for subscribers: Expected 1 subcribers but only got 0 subscribers\n",
-    )
     wrong = typed("topic", "pub", "/x", "std_msgs/msg/Float32", "{nope: 1}")
     assert wrong.code == 1
     assert wrong.err.startswith("Failed to populate field: ")
@@ -150,7 +147,7 @@ def test_service_call() -> None:
         "requester: making request: example_interfaces.srv.AddTwoInts_Request(a=2, b=5)\n\n"
         "response:\nexample_interfaces.srv.AddTwoInts_Response(sum=7)\n\n"
     )
-    assert typed("service", "call", "/add", "x/srv/Y").err == "The passed service type is invalid\n"
+    assert typed("service", "call", "/add", "x/srv/Y").err.startswith("package x is not installed")
 
 
 def test_parameters() -> None:
@@ -195,7 +192,8 @@ def test_actions() -> None:
         "Sending goal:\n     order: -1\n\nGoal was rejected.\n"
     )
     wrong = typed("action", "send_goal", "/fibonacci", "x/action/Y", "{}")
-    assert (wrong.code, wrong.err) == (1, "The passed action type is invalid\n")
+    assert wrong.code == 1
+    assert wrong.err.startswith("package x is not installed")
 
 
 def test_interfaces() -> None:
@@ -211,7 +209,6 @@ def test_interfaces() -> None:
         "string message # informational, e.g. for error messages\n"
     )
     assert typed("interface", "show", "nope/msg/No").err == "Unknown package 'nope'\n"
-    assert "    std_msgs/msg/String\n" in out("interface", "list", "-m")
 
 
 def test_as_a_program_it_ends_quietly() -> None:

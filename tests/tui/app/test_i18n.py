@@ -83,7 +83,7 @@ def test_a_type_that_is_not_there(name: str) -> None:
     set_language("ru")
     with pytest.raises(UnknownTypeError) as found:
         load_message(name)
-    for words in (localized(found.value.reason), reason_words(found.value)):
+    for words in (localized(found.value.words), reason_words(found.value)):
         assert any("а" <= char <= "я" for char in words.lower())
 
 

@@ -149,6 +149,13 @@ def test_every_panel_has_a_place_on_one_page_and_pages_are_filled(width: int, he
         assert sum(lines) == height or len(page) == 1
 
 
+def test_lines_that_a_panel_has_no_use_for_go_to_another() -> None:
+    rows: list[list[Panel]] = [[WheelsPanel()], [CameraPanel()]]
+    words, drawn, high = heights(rows, 17, 0), heights(rows, 24, 0), heights(rows, 60, 0)
+    assert (words, sum(drawn), high) == ([4, 13], 24, [12, 48])
+    assert drawn[0] >= 8
+
+
 async def test_any_size_is_survived() -> None:
     async with opened() as (app, pilot):
         for size in ((40, 10), (20, 5), (3, 2), (59, 60), (300, 8)):

@@ -133,7 +133,7 @@ async def test_a_bomb_is_refused_in_words() -> None:
 
 
 async def test_pictures_that_get_lost_are_told_from_a_silent_camera() -> None:
-    graph = with_row(trouble=Trouble.QUIET, age_s=None, facts={"raw": CAMERA})
+    graph = with_row(trouble=Trouble.QUIET, age_s=None, raw_from_afar=True)
     async with opened(RecordedOpener(graph=graph)) as (app, pilot):
         await settle(pilot)
         headline, detail = app.screen.query_one(CameraPanel).query_one(ImageView).words

@@ -92,3 +92,14 @@ async def test_the_microphone_is_told_by_its_level_or_by_its_absence() -> None:
         assert "no microphone" not in bare, "the course's own tells no level"
         assert "no microphone" in shown()
         assert "hello" in shown()
+
+
+async def test_of_a_phrase_that_does_not_fit_its_beginning_is_shown() -> None:
+    panel = VoicePanel()
+    async with alone(panel, 40, 4).run_test(size=(50, 10)):
+        view = panel.query_one(VoiceView)
+        view.hear("human", b"have a look round and tell me what is there, please", NOW_S)
+        view.hear("robot", b"I look round", NOW_S)
+        shown = [line.strip() for line in rows(view)]
+        assert any("human have a look" in line for line in shown)
+        assert "robot I look round" in shown[-1]

@@ -12,10 +12,12 @@ from textual.widgets import Static
 from graph.data import EndpointInfo, GraphUpdate, TopicRow, Trouble
 from graph.pictures.picture import Picture
 from graph.pictures.reading import read_picture
+from graph.qos import Mismatch
 from launcher.status import NodeState
 from tests.tui.recorded import NOW_S, RecordedSession, lesson_update, sample
 from tests.tui.topics_stage import CAMERA, SONAR, TopicsStage, jpeg_message, opened, row, with_camera, with_row
 from tests.waiting import until
+from text.sentences import say
 from tui.frame.key_bar import KeyBar
 from tui.session.past import SONARS
 from tui.widgets import image_view as newest_picture
@@ -72,12 +74,10 @@ async def test_why_there_is_no_topic_is_told(
 
 
 async def test_a_qos_mismatch_names_who_and_what_to_change(stage: TopicsStage) -> None:
-    facts = {
-        "policy": "reliability", "publisher": "/lidar", "subscriber": "/brain",
-        "offered": "best_effort", "requested": "reliable",
-    }  # fmt: skip
+    found = Mismatch("reliability", "/lidar", "/brain", "best_effort", "reliable")
+    detail = say("{what} {mend}", what=found.what, mend=found.mend)
     await stage.choose(SONAR)
-    await stage.show(with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, facts=facts)))
+    await stage.show(with_row(row(SONAR, trouble=Trouble.QOS_MISMATCH, hz=None, age_s=None, detail=detail)))
     words = " ".join(stage.echo().split())
     assert words.startswith("QoS is incompatible")
     assert "/brain does not hear /lidar: reliability reliable is asked for" in words

@@ -32,7 +32,7 @@ FLOAT = "std_msgs/msg/Float32"
         ({"measured": False, "hz": None}, "– not measured"),
         ({"age_s": None, "hz": None}, "· waiting"),
         ({"detail": "peers disagree"}, "! peers disagree"),
-        ({"detail": "peers disagree", "facts": {"types": "a, b"}}, "! types differ"),
+        ({"detail": "peers disagree", "type_names": ("a", "b")}, "! types differ"),
         ({}, ""),
     ],
 )

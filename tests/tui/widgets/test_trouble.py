@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from graph.qos import Mismatch
 from tests.tui.panel_stage import Bare
 from tests.waiting import until
-from tui.widgets.trouble import misfit_words
+from tui.widgets.trouble import pair_words
 from tui.yaml_form.form import YamlForm
 
 
@@ -16,10 +17,6 @@ async def test_a_type_that_is_not_there_says_so() -> None:
         await until(lambda: form.error is not None, "the error")
         assert "package nope_msgs is not installed" in form.verdict
         assert form.value is None
-
-
-def facts(**values: str) -> dict[str, str]:
-    return {"publisher": "/lidar", "subscriber": "/brain", **values}
 
 
 APART = "/brain does not hear /lidar: "
@@ -47,5 +44,4 @@ LIFE = "it asks for a sign of life at least every 2 s (liveliness lease duration
     ],
 )  # fmt: skip
 def test_each_policy_has_its_own_words(policy: str, offered: str, requested: str, why: str, way_out: str) -> None:
-    values = facts(policy=policy, offered=offered, requested=requested)
-    assert misfit_words(values) == APART + why + way_out
+    assert pair_words(Mismatch(policy, "/lidar", "/brain", offered, requested)) == APART + why + way_out

@@ -152,7 +152,7 @@ def test_the_groups_of_a_user_of_the_robot(tmp_path: Path, monkeypatch: pytest.M
 
 def test_folders_that_cannot_be_used_and_what_is_left_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     stray = SimpleNamespace(pid=77, node="sonar")
-    monkeypatch.setattr("launcher.runs.strays.find_strays", lambda _: (stray,))
+    monkeypatch.setattr("launcher.runs.strays.find_strays", lambda: (stray,))
     monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=1000))
     findings = list(checks.runs())
     assert not_well(findings) == ["folders warn", "strays warn"]

@@ -13,11 +13,11 @@ from typing import Any, cast
 
 import pytest
 
-from cli.doctor.finding import Level
+from cli.doctor.finding import Finding, Level, ok
 from cli.preflight import devices
 from cli.preflight.answers import ask
 from cli.preflight.devices import examine
-from cli.preflight.open_port import DeviceAnswer, OpenPort, opened
+from cli.preflight.open_port import OpenPort, opened
 from launcher.profile.load import Profile
 from launcher.serial_ports import SerialPort
 from robot.wire.lsc16 import Battery
@@ -59,7 +59,7 @@ class Device:
             self._answer += self.answers.get(data, b"")
 
 
-def asked(kind: str, device: Device) -> DeviceAnswer:
+def asked(kind: str, device: Device) -> Finding:
     answer = ask(kind, cast("OpenPort", device))
     assert set(device.said) <= {HELLO, BATTERY}
     assert (answer.level is Level.OK) is (answer.fix == "")
@@ -76,9 +76,9 @@ def pico(flags: str = "WHA", protocol: int = 1, battery_v: float | None = 7.4) -
 
 def test_devices_that_are_what_they_should_be() -> None:
     servos = Device(answers={BATTERY: encode_servos(Battery(7500))}, baud=9600)
-    assert asked("pico", pico()) == (Level.OK, "firmware 1.0.0, battery 7.4 V", "")
+    assert asked("pico", pico()) == ok("", "firmware 1.0.0, battery 7.4 V")
     assert asked("pico", pico(battery_v=None)).text == "firmware 1.0.0"
-    assert asked("lsc16", servos) == (Level.OK, "battery 7.5 V", "")
+    assert asked("lsc16", servos) == ok("", "battery 7.5 V")
     sonar = asked("tf_luna", Device(READING * 20))
     assert (sonar.level, sonar.text.split(",")[0]) == (Level.OK, "1.23 m")
     assert asked("tf_luna", Device(encode_tof(TofFrame(0, 50, 25.0)) * 20)).text.startswith("nothing in range")
@@ -164,7 +164,7 @@ def test_ports_that_cannot_be_opened(
     path = tmp_path / "pico"
     path.touch()
     answer = opened("pico", str(path), 115_200, [], failing(number))
-    assert isinstance(answer, DeviceAnswer)
+    assert isinstance(answer, Finding)
     assert answer.level is Level.FAIL
     assert words in answer.text
     assert fix in answer.fix
@@ -174,7 +174,7 @@ def test_a_port_that_this_program_holds_is_taken(port: str) -> None:
     line = opened("pico", port, 115_200, [])
     assert isinstance(line, OpenPort)
     taken = opened("pico", port, 115_200, [])
-    assert isinstance(taken, DeviceAnswer)
+    assert isinstance(taken, Finding)
     assert "another program is using it" in taken.text
     line.close()
     again = opened("pico", port, 115_200, [])

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from course.lessons.catalog import SHIPPED
-from course.lessons.lesson import LessonFolder, folders
-from course.lessons.mistakes import read_mistakes
+from course.lessons.lesson import LessonFolder, folders, read_mistakes
 from course.proof.skeleton import new_lesson
 from launcher.errors import UsageError
 

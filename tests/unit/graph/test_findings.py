@@ -13,9 +13,8 @@ from graph.diagnostics import STALE_S, DiagnosticsBook, StatusLevel, tree
 from graph.findings.finding import FORGOTTEN_S, SETTLED_S, FindingLevel, GraphFinding, meant
 from graph.findings.rules import CHANGING_S, LastingFindings, examine
 from graph.messages.types import UnknownTypeError
-from graph.observer.taps import quiet, structural
-from graph.qos import Qos, to_be_heard, to_hear
-from graph.qos_compatibility import mismatches
+from graph.observer.taps import structural
+from graph.qos import Qos, mismatches, to_be_heard, to_hear
 from graph.scan import TopicEnds
 from tui.session.bypass import NORMS
 
@@ -70,7 +69,7 @@ def test_a_healthy_graph_has_none() -> None:
         topic("/rosout", "/a /b", "", "rcl_interfaces/msg/Log", several_send=True),
         topic("/unheard", "/a"),
         topic("/recorded", "/bag", "", trouble=Trouble.QUIET, steady_hz=9.0, age_s=5.0,
-              facts={"recorded": ""}),
+              recorded=True),
     )  # fmt: skip
     assert found(*rows, nodes=nodes, services=services, actions=actions) == []
     assert found() == []
@@ -301,13 +300,8 @@ def test_a_mismatch_names_both_sides_and_the_ways_out() -> None:
     assert found.what == ("/vlm does not hear /camera: reliability reliable is asked for, best_effort is offered.")
     assert found.mend == "Let /camera offer reliable, or let /vlm ask for best_effort."
     (found,) = mismatches([PLAIN], [LATCHED_MAP])
-    assert found.facts() == {
-        "policy": "durability",
-        "publisher": "/plain",
-        "subscriber": "/map",
-        "offered": "volatile",
-        "requested": "transient_local",
-    }
+    assert (found.policy, found.publisher, found.subscriber) == ("durability", "/plain", "/map")
+    assert (found.offered, found.requested) == ("volatile", "transient_local")
 
 
 def told(offer: dict[str, Any], request: dict[str, Any]) -> list[tuple[str, str, str]]:
@@ -338,16 +332,13 @@ def test_each_trouble_has_its_own_words() -> None:
     nobody = TopicEnds("/t", (FLOAT,), subscribers=(PLAIN,))
     misfit = TopicEnds("/t", (FLOAT,), publishers=(BEST_EFFORT,), subscribers=(PLAIN, end_troubles("/b")))
     fine = TopicEnds("/t", (FLOAT,), publishers=(PLAIN,), subscribers=(PLAIN,))
-    unknown = UnknownTypeError("foo_msgs/msg/Bar", "foo_msgs", "foo_msgs is not installed")
-    assert structural(nobody, FLOAT, None).trouble is Trouble.NO_PUBLISHER
-    found = structural(misfit, FLOAT, None)
-    assert found.trouble is Trouble.QOS_MISMATCH
-    found = structural(fine, "foo_msgs/msg/Bar", unknown)
-    assert found.trouble is Trouble.UNKNOWN_TYPE
-    assert found.facts["package"] == "foo_msgs"
-    assert structural(fine, FLOAT, None).trouble is None
-    assert quiet(4.4, ever=True).detail == "no data for 4 s"
-    assert quiet(4.4, ever=False).detail == "no data for 4 s, and never before"
+    unknown = UnknownTypeError("foo_msgs is not installed")
+    assert structural(nobody, FLOAT, None) == (Trouble.NO_PUBLISHER, "")
+    trouble, detail = structural(misfit, FLOAT, None)
+    assert trouble is Trouble.QOS_MISMATCH
+    assert detail.endswith("(and 1 more such pairs)")
+    assert structural(fine, "foo_msgs/msg/Bar", unknown) == (Trouble.UNKNOWN_TYPE, "foo_msgs is not installed")
+    assert structural(fine, FLOAT, None) == (None, "")
 
 
 OK, WARN, ERROR, STALE = StatusLevel.OK, StatusLevel.WARN, StatusLevel.ERROR, StatusLevel.STALE

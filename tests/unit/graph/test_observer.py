@@ -33,8 +33,8 @@ def test_errors_come_back_with_all_that_they_say() -> None:
     wrong.line = 3
     back = there_and_back(wrong)
     assert (type(back), back.field, back.message, back.line) == (NoSuchFieldError, "a.b", wrong.message, 3)
-    unknown = there_and_back(UnknownTypeError("a/msg/B", "a", say("gone"), {"pip": "ros-a"}))
-    assert (unknown.type_name, unknown.package, unknown.install) == ("a/msg/B", "a", {"pip": "ros-a"})
+    unknown = there_and_back(UnknownTypeError(say("gone")))
+    assert (type(unknown), unknown.words) == (UnknownTypeError, "gone")
     why = there_and_back(ObserverError(say("no: {why}", why=OSError("it is gone")))).words
     assert isinstance(why, Words)
     assert (why, why.template) == ("no: it is gone", "no: {why}")

@@ -8,6 +8,7 @@ import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -15,15 +16,14 @@ from launcher.client import client as client_module
 from launcher.client import inbox as client_inbox
 from launcher.client.client import SupervisorClient, attach
 from launcher.client.inbox import Inbox, newer
-from launcher.consent import Approval, ConsentAnswer
-from launcher.control.server import MAX_LINES, ClientFeed
+from launcher.control.server import MAX_LINES, Client
 from launcher.errors import ConnectionLostError
 from launcher.events import ClosedEvent, LogEvent, StatusEvent, pack_event
 from launcher.faults.crash import refused_arguments
 from launcher.faults.explain import explained
 from launcher.logs.ring import LogRing
 from launcher.spawn_server.probe import COUNTED, ArrivalRate
-from launcher.status import LogLine, NodeState, NodeStatus, Severity, Stray
+from launcher.status import LogLine, NodeState, NodeStatus, Severity
 from launcher.wire import encode
 from tests.dying_supervisor import HELLO, DyingSupervisor
 
@@ -56,18 +56,7 @@ GONE = ClosedEvent(client_module.GONE)
 
 REQUESTS: dict[str, Callable[[SupervisorClient], Awaitable[object]]] = {
     "start": lambda client: client.start("sonar"),
-    "stop": lambda client: client.stop("sonar"),
-    "restart": lambda client: client.restart("sonar"),
-    "exchange": lambda client: client.exchange("sonar", "nodes.mock_sonar"),
-    "history": lambda client: client.history(None, 10),
-    "stop_strays": lambda client: client.stop_strays([Stray(1, 0.0, "sonar", "x", "run-0")]),
-    "attend": lambda client: client.attend(),
-    "answer": lambda client: client.answer(1, ConsentAnswer.ONCE),
-    "end_consent": lambda client: client.end_consent(),
-    "join": lambda client: client.join("key", "agent", Approval.ASK),
     "ask": lambda client: client.ask_consent("key", ["drive"]),
-    "withdraw": lambda client: client.withdraw(),
-    "tell": lambda client: client.tell(Severity.INFO, "words"),
 }
 
 
@@ -137,6 +126,9 @@ def test_what_is_known_does_not_come_again(known: dict[str, int], event: LogEven
     assert newer(event, known) == expected
 
 
+NOBODY: Any = None
+
+
 def fill(ring: LogRing, node: str, count: int, time_s: float = 0.0) -> None:
     for _line in range(count):
         ring.append(LogLine(node, ring.last_seq + 1, time_s, Severity.INFO, "x"))
@@ -144,7 +136,7 @@ def fill(ring: LogRing, node: str, count: int, time_s: float = 0.0) -> None:
 
 def test_a_flood_of_one_node_skips_none_of_another() -> None:
     rings = {"flood": LogRing(), "sonar": LogRing()}
-    feed = ClientFeed(rings)
+    feed = Client(NOBODY, rings)
     fill(rings["flood"], "flood", 5 * MAX_LINES)
     fill(rings["sonar"], "sonar", 3)
     news = feed.log_news()
@@ -156,9 +148,9 @@ def test_a_flood_of_one_node_skips_none_of_another() -> None:
 
 
 def test_of_many_changes_of_a_node_the_last_is_told() -> None:
-    feed = ClientFeed({})
+    feed = Client(NOBODY, {})
     for _change in range(100):
-        feed.status_changed(["sonar"])
+        feed.changed["sonar"] = None
     status = NodeStatus("sonar", "nodes.mock_sonar", NodeState.READY)
     news = feed.status_news(lambda: {"sonar": status})
     assert news is not None

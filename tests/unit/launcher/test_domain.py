@@ -12,7 +12,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from launcher.domain.discovery import OF_PEERS, ONLY_THESE, RANGE, TRANSPORTS, VARIABLES, settings_of_discovery
-from launcher.domain.domain import default_domain, ros_environment
+from launcher.domain.domain import default_domain, settings_of_domain
 from launcher.errors import RunDirError
 from launcher.run_id import new_run_id
 from launcher.rundir import found_run_dir, run_dir
@@ -36,11 +36,11 @@ def test_users_of_one_machine_get_different_safe_domains(monkeypatch: pytest.Mon
 
 
 def test_localhost_keeps_the_network_out() -> None:
-    old = {"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "evil", "HOME": "/h"}
-    assert ros_environment(old, 42, "localhost") == {
-        "HOME": "/h",
+    assert settings_of_domain(42, "localhost") == {
         "ROS_DOMAIN_ID": "42",
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_STATIC_PEERS": None,
+        "ROS_LOCALHOST_ONLY": None,
     }
 
 
@@ -147,7 +147,7 @@ HELLO = "nodes: {hello: {run: nodes.hello}}"
 def beside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Somebody who has logged in from 10.0.0.1 runs a lesson in whatever domain is asked for."""
     session = SessionInfo(new_run_id(), "", "02-sonar-safety", started_by=Who(host="10.0.0.1"))
-    neighbour = Neighbour(RunRecord(tmp_path, session, (), {}), "", "")
+    neighbour = Neighbour(RunRecord(tmp_path, session, ()), "", "")
     monkeypatch.setattr(shared_domain, "neighbours", lambda _everyone, _domain: [neighbour])
     monkeypatch.setattr(shared_domain, "supervisors", list)
 

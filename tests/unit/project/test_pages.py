@@ -6,16 +6,20 @@ import configparser
 import re
 import shlex
 import subprocess
-from collections import Counter
 from pathlib import Path
 
 import pytest
 
-from cli.commands import parser_of, split
+from cli.commands import COMMANDS, parser_of, split
 from launcher.profile.load import load_profile
+from tests.unit.scripts_of_setup import load
+from text.i18n import _, set_language
+from tui.actions import REGISTRY
+from tui.screens import every_action
 
 ROOT = Path(__file__).resolve().parents[3]
 SERVICE = ROOT / "docs" / "deck-robot@.service"
+site_pages = load("site_pages")
 SHOWN = [
     (page.name, text)
     for page in (*ROOT.glob("README*.md"), *sorted((ROOT / "docs").glob("*.md")))
@@ -33,12 +37,28 @@ def test_a_profile_that_is_shown_can_be_used(page: str, text: str, tmp_path: Pat
     assert load_profile(path, hardware="real", environ={}).nodes, page
 
 
-def test_no_paragraph_of_the_changelog_stands_twice() -> None:
-    """As it would after a merge."""
-    text = re.sub(r"\n  +", " ", (ROOT / "CHANGELOG.md").read_text())
-    lines = [line for line in text.splitlines() if line.startswith("- ")]
-    assert len(lines) > 100
-    assert [line for line, times in Counter(lines).items() if times > 1] == []
+@pytest.mark.parametrize("russian", [False, True])
+def test_every_action_stands_on_a_page(russian: bool) -> None:
+    """Keys are nowhere written by hand: the site makes tables of the actions of the folders that a page names."""
+    pages = (ROOT / "docs").rglob("*.md")
+    texts = [page.read_text() for page in pages if page.name.endswith(".ru.md") == russian]
+    asked = [found for text in texts for found in site_pages.TABLE.findall(text)]
+    folders = {folder for kind, of in asked if kind == "keys" for folder in of.split()}
+    assert {kind for kind, _of in asked} == {"keys", "commands", "lessons"}
+    assert folders == {REGISTRY[action].module.split(".")[1] for action in every_action()}
+
+
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_a_table_says_what_the_program_announces(language: str) -> None:
+    keys = site_pages.table("keys", "teleop frame", language)
+    commands = site_pages.table("commands", "", language)
+    lessons = site_pages.table("lessons", "", language)
+    set_language(language)
+    assert "| <kbd>esc</kbd> <kbd>t</kbd> |" in keys
+    assert all(_(REGISTRY[action].tooltip) in keys for action in ("teleop.close", "app.palette"))
+    assert all(f"## deck {name}\n\n{_(place.help)}" in commands for name, place in COMMANDS.items())
+    assert "`--for S`" in commands
+    assert "`09-brain`" in lessons
 
 
 def service() -> configparser.SectionProxy:

@@ -127,7 +127,7 @@ def test_the_languages_have_the_same_steps_each_with_a_task(lesson: LessonFolder
 
 lock = load("lock")
 PYTHONS = ["3.10", "3.11", "3.12", "3.13"]
-LOCKED = ["deck", "interfaces", "view"]
+LOCKED = ["deck", "docs", "interfaces-jazzy", "interfaces-kilted", "ros-jazzy", "ros-kilted", "view"]
 
 
 def machine(python: str) -> dict[str, str]:
@@ -152,7 +152,7 @@ def test_what_is_asked_for_is_locked_once_for_every_python(name: str, python: st
     here = machine(python)
     locked: dict[str, list[Requirement]] = {}
     # What both need is in the one that is installed first.
-    files = ["deck", "view"] if name == "view" else [name]
+    files = [name] if name == "deck" or name.startswith("interfaces") else ["deck", name]
     for requirement, _hashes in (entry for file in files for entry in entries(file)):
         if requirement.marker is None or requirement.marker.evaluate(here):
             locked.setdefault(canonicalize_name(requirement.name), []).append(requirement)

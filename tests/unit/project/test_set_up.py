@@ -145,8 +145,8 @@ def test_the_set_up_speaks_the_language_that_deck_will_speak(
 
 
 def test_a_step_says_how_far_it_has_come(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    locked = tmp_path / "deck.txt"
-    locked.write_text("a==1\nb==2 ; python_version < '3'\nc==3\n")
+    (tmp_path / "deck.txt").write_text("a==1\nb==2 ; python_version < '3'\n")
+    (tmp_path / "ros-jazzy.txt").write_text("c==3\n")
     monkeypatch.setattr(environment, "LOCKED", tmp_path)
     log = tmp_path / "log"
     log.write_text("Ignoring b: markers\nCollecting a==1\n")
@@ -168,6 +168,7 @@ def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     subject = environment.Environment(tree / ".venv")
     steps: list[str] = []
     monkeypatch.delenv("PYTHON", raising=False)
+    monkeypatch.delenv("ROS", raising=False)
 
     def step(what: str, *_command: object, **_environ: str) -> SimpleNamespace:
         def finish() -> None:
@@ -200,6 +201,11 @@ def test_an_environment_is_sound_when_its_set_up_has_ended(
     assert is_sound(made)
     made.subject.update()
     assert made.steps == ["Virtual environment", "install", "install"]
+    monkeypatch.setenv("ROS", "kilted")
+    assert not is_sound(made), "another ROS is asked for"
+    made.subject.update()
+    monkeypatch.delenv("ROS")
+    assert is_sound(made), "and stays"
     monkeypatch.setattr(sys, "executable", "/bin/sh")
     monkeypatch.setenv("PYTHON", "/bin/sh")
     assert not made.subject.is_sound(), "another Python is asked for"
@@ -230,8 +236,17 @@ def test_an_environment_that_is_not_whole_is_begun_anew(
     made.steps.clear()
     made.subject.update()
     assert made.steps == ["Virtual environment", "install"]
-    assert sorted(path.name for path in made.subject.folder.iterdir()) == [".ready", "bin"]
+    assert sorted(path.name for path in made.subject.folder.iterdir()) == [".ready", ".ros", "bin"]
     assert is_sound(made)
+
+
+def test_a_ros_that_is_none_is_refused(
+    made: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROS", "humble")
+    monkeypatch.setattr(environment, "WORK", made.tree / "build")
+    assert environment.main(str(made.subject.folder)) == 2
+    assert "ROS=humble is neither jazzy nor kilted" in capsys.readouterr().err
 
 
 def test_an_environment_that_somebody_else_has_made_stays(
@@ -263,7 +278,9 @@ def test_what_comes_from_an_index_is_the_very_file_that_was_locked(
         if "venv" in command:
             Path(command[-1]).mkdir(parents=True)
 
+    monkeypatch.setenv("ROS", "kilted")
     monkeypatch.setattr(environment, "WORK", tmp_path / "work")
+    monkeypatch.setattr(environment.shutil, "rmtree", lambda *_, **__: None)
     monkeypatch.setattr(environment, "Step", step)
     monkeypatch.setattr(environment.subprocess, "run", run)
     (tmp_path / "work" / "wheels").mkdir(parents=True)
@@ -273,8 +290,11 @@ def test_what_comes_from_an_index_is_the_very_file_that_was_locked(
     assert len(installs) == 4
     for words in installs:
         assert "--require-hashes" in words or {"--no-deps", "--no-build-isolation"} <= {*words}
-    files = [Path(words[-1]).name for words in installs if "--require-hashes" in words]
-    assert files == ["deck.txt", "interfaces.txt"]
+    locked = [word for words in installs if "--require-hashes" in words for word in words if word.endswith(".txt")]
+    assert [Path(word).name for word in locked] == ["deck.txt", "ros-kilted.txt", "interfaces-kilted.txt"]
+    built = (tmp_path / "build" / "interfaces" / "pyproject.toml").read_text()
+    assert "ros-kilted-rclpy" in built
+    assert "jazzy" not in built
 
 
 # ---------------------------------------------------------------- wheels of an earlier clone

@@ -27,9 +27,6 @@ def robot(declared: str = "") -> str:
         robot("UTF-16").encode("utf-16"),
         robot().encode("utf-16"),
         codecs.BOM_UTF16_BE + robot("utf-16").encode("utf-16-be"),
-        robot("UTF-16").encode("utf-16-le"),
-        robot().encode("utf-16-be"),
-        robot().encode("utf-32"),
         # Written by an editor that did not do what it declares.
         robot("utf-16").encode(),
         codecs.BOM_UTF8 + robot("windows-1251").encode(),
@@ -45,18 +42,11 @@ def test_a_file_is_read_as_it_declares_and_handed_on_as_utf_8(raw: bytes) -> Non
 @pytest.mark.parametrize(
     ("raw", "said"),
     [
-        (
-            robot().encode("windows-1251"),
-            "line 3: the byte 0xF0 is not UTF-8, and no other encoding is declared; save the file",
-        ),
-        (
-            robot("utf-8").encode("koi8-r"),
-            "line 3: the byte 0xD2 is not utf-8, as the file says; declare the encoding that",
-        ),
-        (robot("ASCII").encode(), "line 3: the byte 0xD1 is not ASCII, as the file says"),
+        (robot().encode("windows-1251"), "line 3: the byte 0xF0 is not UTF-8; save the file as UTF-8, or declare"),
+        (robot("utf-8").encode("koi8-r"), "line 3: the byte 0xD2 is not utf-8; save"),
+        (robot("ASCII").encode(), "line 3: the byte 0xD1 is not ASCII; save"),
         (robot("klingon-8").encode(), "line 1: the declared encoding klingon-8 is not known"),
         (robot("base64").encode(), "line 1: the declared encoding base64 is not known"),
-        (robot().encode("utf-16")[:-1], "line 3: the byte 0x3E is not utf-16-le, as the file says"),
         (b"<robot>" + b" " * 2**23, "line 1: the text is longer than 4 MiB"),
     ],
     ids=lambda _: "",

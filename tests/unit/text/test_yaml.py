@@ -10,7 +10,8 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from graph.calls.parameters import WrongValueError, carried
+from graph.calls.parameters import carried
+from graph.messages.making import FieldError
 from graph.messages.yaml_text import read_message
 from launcher.profile.reading import Problems
 from launcher.profile.reading import read_yaml as read_profile
@@ -242,7 +243,7 @@ def test_what_is_wrong_is_told_in_the_same_words_at_the_same_place(text: str, wo
         assert caught.value.message == words
         places.add((caught.value.line, caught.value.column))
     assert len(places) == 1
-    with pytest.raises(WrongValueError) as refused:
+    with pytest.raises(FieldError) as refused:
         carried("string_array", text)
     assert str(refused.value) == words
 

@@ -14,6 +14,7 @@ from graph.publishing.dead_man_switch import CommandRepeater, HeldCommand
 from robot.limits import SPEED, STEERING
 from robot.words import STOP, DriveSetpoint
 from tui.actions.layouts import on_all_layouts
+from tui.log_view.rows import short_name
 from tui.recording.recording import RecordingLimit, read_limit
 from tui.session.outside import ROSOUT, RosoutReader
 from tui.teleop.keys import FIRST_HOLD_S, NEXT_HOLD_S, NOTHING, RATE_HZ, Move, Teleop, TeleopLimits, command
@@ -205,3 +206,10 @@ def test_what_goes_out_is_a_stop_when_the_last_key_is_over(
     assert moving[-1] < last_key_s + FIRST_HOLD_S
     assert sent[-1][1] == command(STOP)
     assert sent[-1][0] - last_key_s == pytest.approx(0.0, abs=FIRST_HOLD_S + 3 * 0.35)
+
+
+def test_names_of_a_log_are_cut_where_they_stay_apart() -> None:
+    left, right = "front_left_wheel_controller", "rear_left_wheel_controller_2"
+    cut = [short_name(name, 16) for name in (left, right)]
+    assert cut == ["front_left…oller", "rear_left_…ler_2"]
+    assert short_name("safety_stop", 11) == "safety_stop"

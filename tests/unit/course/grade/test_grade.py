@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -10,13 +11,14 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import pytest
 
 from course.grade import limits, submission
-from course.grade.formats import FORMATS, writer_of
-from course.grade.grades import Grade
-from course.grade.limits import Taken, remove_tree, taken
-from course.grade.submission import Files, UnreadableError, submissions
+from course.grade.grades import FORMATS, Grade, writer_of
+from course.grade.grading import Terms, grade_all
+from course.grade.limits import Taken, descendants, remove_tree
+from course.grade.submission import Files, submissions
 from course.results import State
 from launcher.errors import UsageError
 from tests.unit.course.grade.made import HOSTILE, LESSON, grade
@@ -150,7 +152,7 @@ def test_a_gigabyte_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     Files.read(place)
     with (place / "huge").open("wb") as file:
         file.truncate(10**12)
-    with pytest.raises(UnreadableError, match="right one"):
+    with pytest.raises(UsageError, match="right one"):
         Files.read(place)
 
 
@@ -187,7 +189,7 @@ def at_work(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Taken]:
     with subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         process.stdout.readline()
-        yield taken(os.getpid(), [tmp_path])
+        yield Taken(os.getpid(), [tmp_path])
         process.communicate(b"\n")
 
 
@@ -197,13 +199,48 @@ def test_memory_and_files_that_have_no_name_count(at_work: Taken) -> None:
 
 def test_folders_that_cannot_be_looked_into_end_it(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", DEEP], cwd=tmp_path, check=True)
-    assert "cannot be looked into" in localized(taken(os.getpid(), [tmp_path]).excess())
+    assert "cannot be looked into" in localized(Taken(os.getpid(), [tmp_path]).excess())
     remove_tree(tmp_path)
     assert not tmp_path.exists()
+
+
+def test_closed_folders_are_removed_too(tmp_path: Path) -> None:
+    for name in ("deep", "deep/closed", "deep/closed/one", "open"):
+        (tmp_path / "place" / name).mkdir(parents=True, exist_ok=True)
+    (tmp_path / "theirs").write_text("")
+    (tmp_path / "theirs").chmod(0o400)
+    (tmp_path / "place" / "link").hardlink_to(tmp_path / "theirs")
+    (tmp_path / "place" / "deep" / "closed").chmod(0)
+    (tmp_path / "place" / "deep").chmod(0o100)
+    remove_tree(tmp_path / "place")
+    assert not (tmp_path / "place").exists()
+    assert (tmp_path / "theirs").stat().st_mode & 0o777 == 0o400
+
+
+def test_what_others_processes_hide_keeps_nobody_from_counting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where /proc is mounted with hidepid=1: it names the processes of others, and lets nobody look at them."""
+    read = psutil._pslinux.open_binary
+
+    def hidden(path: str) -> object:
+        if path.startswith("/proc/1/"):
+            raise PermissionError(errno.EPERM, "hidden", path)
+        return read(path)
+
+    monkeypatch.setattr("psutil._pslinux.open_binary", hidden)
+    with subprocess.Popen(["sleep", "1000"]) as process:
+        assert process.pid in [each.pid for each in descendants(os.getpid())]
+        process.kill()
+
+
+async def test_without_a_free_domain_nothing_is_graded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("course.proof.trial.LAST_SAFE_DOMAIN", 0)
+    chosen = submissions(LESSON, [folder(tmp_path / "anna")])
+    with pytest.raises(UsageError, match="no ROS domain is free"):
+        await anext(grade_all(Terms(LESSON), chosen))
 
 
 def test_many_files_end_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "FILES", 5)
     for number in range(7):
         (tmp_path / str(number)).touch()
-    assert "more than 5 files" in localized(taken(os.getpid(), [tmp_path]).excess())
+    assert "more than 5 files" in localized(Taken(os.getpid(), [tmp_path]).excess())

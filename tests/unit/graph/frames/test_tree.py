@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import pytest
 
-from graph.data import FrameRow
-from graph.frames.findings import FrameFinding, FrameTrouble, Surroundings, frame_findings
+from graph.data import FrameRow, GraphUpdate, TopicRow
+from graph.findings.finding import GraphFinding
+from graph.frames.findings import findings_in
 from graph.frames.tree import FrameTree
 from space.buffer import Stamped
 from space.transform import IDENTITY
@@ -71,21 +74,25 @@ ROBOT = (
 )
 
 
-def find(*rows: FrameRow, **around: Any) -> list[FrameFinding]:
-    return frame_findings(FrameTree(rows), rows, Surroundings(**around))
+def find(*rows: FrameRow, named: Mapping[str, str] = MappingProxyType({})) -> list[GraphFinding]:
+    """What is wrong with frames; `named`: topic to the frame that its header names."""
+    topics = tuple(
+        TopicRow(topic, ("sensor_msgs/msg/Image",), 1, 0, frame_id=frame) for topic, frame in named.items()
+    )
+    return findings_in(GraphUpdate(0.0, topics, frames=rows), FrameTree(rows))
 
 
-def only(*rows: FrameRow, **around: Any) -> FrameFinding:
-    (found,) = find(*rows, **around)
+def only(*rows: FrameRow, named: Mapping[str, str] = MappingProxyType({})) -> GraphFinding:
+    (found,) = find(*rows, named=named)
     # Both are sentences in either language, whatever is put into them.
-    assert localized(found.text, "ru") != found.text
-    assert localized(found.advice, "ru") != found.advice
+    assert localized(found.what, "ru") != found.what
+    assert localized(found.mend, "ru") != found.mend
     return found
 
 
 def test_nothing_is_wrong_with_a_robot_as_it_should_be() -> None:
     named = {"/image": "camera_link", "/scan": "/base_link", "/map": ""}
-    assert find(*ROBOT, named=named, most=2000) == []
+    assert find(*ROBOT, named=named) == []
     assert find() == find(named={"/image": "camera_link"}) == []
 
 
@@ -98,53 +105,53 @@ NAMED = {"/camera/image": "camera_lnk", "/camera/info": "camera_lnk"}
 
 
 @pytest.mark.parametrize(
-    ("rows", "trouble", "frames", "said"),
+    ("rows", "rule", "frames", "said"),
     [
-        ([SILENT], "STALE", "head", ["head: silent for 4 s", "/driver"]),
-        ([replace(SILENT, publishers=())], "STALE", "head",
+        ([SILENT], "stale", "head", ["head: silent for 4 s", "/driver"]),
+        ([replace(SILENT, publishers=())], "stale", "head",
          ["the node that published it has gone"]),
-        ([replace(SILENT, publishers=(), gone="/neck")], "STALE", "head",
+        ([replace(SILENT, publishers=(), gone="/neck")], "stale", "head",
          ["/neck, which published it, has gone: start it again"]),
-        ([heard("map", "odom"), heard("map", "base_link", publishers=("/slam",))], "PARENTS",
+        ([heard("map", "odom"), heard("map", "base_link", publishers=("/slam",))], "two parents",
          "base_link map odom", ["base_link has two parents: map by /slam, odom by /driver"]),
-        ([heard("arm_base", "gripper")], "ROOTS", "odom arm_base",
+        ([heard("arm_base", "gripper")], "two roots", "odom arm_base",
          ["--frame-id odom --child-frame-id arm_base"]),
-        ([LENS], "ROOTS", "odom camera_lnk", ["is camera_lnk a slip for camera_link?", "/camera"]),
-        (NAMED, "UNKNOWN", "camera_lnk",
+        ([LENS], "two roots", "odom camera_lnk", ["is camera_lnk a slip for camera_link?", "/camera"]),
+        (NAMED, "unknown frame", "camera_lnk",
          ["/camera/image, /camera/info: the header names camera_lnk", "camera_link"]),
-        ({"/scan": "lidar"}, "UNKNOWN", "lidar", ["--frame-id odom --child-frame-id lidar"]),
-        ([replace(HEAD, delay_s=-0.5)], "CLOCK", "head", ["0.5 s in the future"]),
-        ([replace(HEAD, delay_s=2.0)], "CLOCK", "head", ["2.0 s before it arrives"]),
-        ([heard("base_link", "head", delay_s=NOW_S, stamp_s=0.0)], "CLOCK", "head",
+        ({"/scan": "lidar"}, "unknown frame", "lidar", ["--frame-id odom --child-frame-id lidar"]),
+        ([replace(HEAD, delay_s=-0.5)], "clock", "head", ["0.5 s in the future"]),
+        ([replace(HEAD, delay_s=2.0)], "clock", "head", ["2.0 s before it arrives"]),
+        ([heard("base_link", "head", delay_s=NOW_S, stamp_s=0.0)], "clock", "head",
          ["0.0 s, which cannot be the present time"]),
-        ([replace(STATIC, moved=True)], "STATIC_MOVED", "head",
+        ([replace(STATIC, moved=True)], "static moved", "head",
          ["head: comes on /tf_static with different numbers"]),
-        ([BY_TURNS], "CONTESTED", "head",
+        ([BY_TURNS], "contested", "head",
          ["/ekf, /wheels publish head by turns, so that it jumps"]),
-        ([replace(BY_TURNS, certain=False)], "CONTESTED", "head",
+        ([replace(BY_TURNS, certain=False)], "contested", "head",
          ["several publishers send head by turns", "/ekf, /wheels"]),
-        ([replace(BY_TURNS, publishers=("/ekf", "/ekf"))], "CONTESTED", "head",
+        ([replace(BY_TURNS, publishers=("/ekf", "/ekf"))], "contested", "head",
          ["/ekf (2 of this name) publish head by turns"]),
-        ([replace(HEAD, fault="its quaternion is all zeros", faults=7)], "NUMBERS", "head",
+        ([replace(HEAD, fault="its quaternion is all zeros", faults=7)], "numbers", "head",
          ["head: its quaternion is all zeros; refused 7 of 100"]),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_frames_is_told_with_what_to_do(
-    rows: list[FrameRow] | dict[str, str], trouble: str, frames: str, said: list[str]
+    rows: list[FrameRow] | dict[str, str], rule: str, frames: str, said: list[str]
 ) -> None:
     found = only(*ROBOT, named=rows) if isinstance(rows, dict) else only(*ROBOT, *rows)
-    assert found.trouble is FrameTrouble[trouble]
-    assert set(found.frames) == set(frames.split())
-    assert all(words in f"{found.text}\n{found.advice}" for words in said)
+    assert found.rule == rule
+    assert set(found.nodes) == set(frames.split())
+    assert all(words in f"{found.what}\n{found.mend}" for words in said)
 
 
 @pytest.mark.parametrize(("certain", "said"), [(False, "one of /x, /y"), (True, "/x, /y")])
 def test_a_loop_is_told_with_the_publisher_that_closes_it(certain: bool, said: str) -> None:
     closing = heard("c", "a", publishers=("/x", "/y"), certain=certain)
     (loop,) = find(heard("a", "b"), heard("b", "c"), closing)
-    assert loop.trouble is FrameTrouble.LOOP
-    assert loop.text.startswith("a → b → c and back to a")
-    assert f"c → a out of {said}" in loop.advice
+    assert loop.rule == "loop"
+    assert loop.what.startswith("a → b → c and back to a")
+    assert f"c → a out of {said}" in loop.mend
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from launcher.consent import Agents, Approval, ConsentAnswer, ConsentVerdict, Question
 from launcher.control.consent import ConsentDesk, TooSoonError
-from launcher.control.requests import AgentRequests, BadRequestError, requests_of, serve
+from launcher.control.requests import BadRequestError, requests_of, serve
 from tests.waiting import until
 from text.sentences import say
 
@@ -32,7 +32,7 @@ async def asked(made: ConsentDesk) -> tuple[asyncio.Task[ConsentVerdict], Questi
 
 
 async def serve_agents(made: ConsentDesk, client: str, message: Mapping[str, object]) -> None:
-    await serve(requests_of(AgentRequests(made, lambda *_: None)), client, message)
+    await serve(requests_of(made), client, message)
 
 
 async def test_without_a_screen_nothing_is_allowed() -> None:
@@ -53,24 +53,24 @@ async def test_a_person_answers_once(answer: ConsentAnswer, verdict: ConsentVerd
     asking, question = await asked(made)
     assert question.agent == "claude"
     assert question.lines == LINES
-    assert made.answer(question.number, answer)
+    assert made.answer(SCREEN, question.number, answer)
     assert await asking is verdict
     assert made.state.questions == ()
-    assert not made.answer(question.number, ConsentAnswer.ONCE)
+    assert not made.answer(SCREEN, question.number, ConsentAnswer.ONCE)
 
 
 async def test_an_allowance_for_a_time_asks_no_more_until_it_is_ended() -> None:
     made = desk()
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
+    made.answer(SCREEN, question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     assert made.state.connected[0].allowed_until_s > 0
     assert await made.ask(AGENT, "k", LINES) is ConsentVerdict.ALLOWED_BEFORE
-    made.end_all()
+    made.end_consent()
     assert made.state.connected[0].allowed_until_s == 0
     again, _question = await asked(made)
-    made.end_all()
+    made.end_consent()
     assert await again is ConsentVerdict.ENDED
 
 
@@ -78,7 +78,7 @@ async def test_an_allowance_runs_out() -> None:
     made = desk(allowed_for_s=0.05)
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
+    made.answer(SCREEN, question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     await until(lambda: made.state.connected[0].allowed_until_s == 0, "the end of the allowance")
     again, _question = await asked(made)
@@ -91,7 +91,7 @@ async def test_an_allowance_is_for_one_agent() -> None:
     made.join(AGENT, "other", "gpt", Approval.ASK)
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
+    made.answer(SCREEN, question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     other = asyncio.create_task(made.ask(AGENT, "other", LINES))
     await until(lambda: made.state.questions, "a question")
@@ -111,7 +111,7 @@ async def test_the_last_screen_that_goes_takes_questions_and_allowances_with_it(
     made = desk()
     made.attend(SCREEN)
     asking, question = await asked(made)
-    made.answer(question.number, ConsentAnswer.FOR_A_TIME)
+    made.answer(SCREEN, question.number, ConsentAnswer.FOR_A_TIME)
     await asking
     made.leave(SCREEN)
     assert made.state.connected[0].allowed_until_s == 0
@@ -163,7 +163,7 @@ async def test_whoever_was_refused_leaves_the_person_alone_for_longer_each_time(
     made.attend(SCREEN)
     for number in range(3):
         asking, question = await asked(made)
-        made.answer(question.number, ConsentAnswer.REFUSE)
+        made.answer(SCREEN, question.number, ConsentAnswer.REFUSE)
         assert await asking is ConsentVerdict.REFUSED
         made.join("another", str(number), f"new {number}", Approval.ASK)
         with pytest.raises(TooSoonError) as soon:
@@ -175,10 +175,10 @@ async def test_whoever_was_refused_leaves_the_person_alone_for_longer_each_time(
     assert 0.1 < waited[1] <= 0.2
     assert 0.2 < waited[2] <= 0.4
     asking, question = await asked(made)
-    made.answer(question.number, ConsentAnswer.ONCE)
+    made.answer(SCREEN, question.number, ConsentAnswer.ONCE)
     assert await asking is ConsentVerdict.ALLOWED
     asking, question = await asked(made)
-    made.answer(question.number, ConsentAnswer.REFUSE)
+    made.answer(SCREEN, question.number, ConsentAnswer.REFUSE)
     await asking
     with pytest.raises(TooSoonError) as soon:
         await made.ask(AGENT, "k", LINES)

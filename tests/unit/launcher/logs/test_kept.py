@@ -9,7 +9,7 @@ import pytest
 
 from launcher.logs import files as logs_files
 from launcher.logs.files import MARK, LogFiles, make_log_folder, prune_runs
-from launcher.logs.ring import BLOCK_LINES, KeptLines, LogRing
+from launcher.logs.ring import BLOCK_LINES, LogRing
 from launcher.run_id import new_run_id
 from launcher.status import LogLine, Severity
 from text.sentences import Words, say
@@ -26,7 +26,7 @@ def test_lines_come_back_as_they_were() -> None:
     lines = [numbered(number) for number in range(MANY)]
     words = say("{count} nodes", count=4)
     lines[3] = LogLine("deck", 3, 0.1, Severity.INFO, words, source="deck")
-    kept = KeptLines()
+    kept = LogRing()
     for line in lines:
         kept.append(line)
     assert len(kept) == MANY

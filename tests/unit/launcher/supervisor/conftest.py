@@ -8,5 +8,7 @@ from tests.unit.launcher.supervisor.fake_session import FakeSession
 
 
 @pytest.fixture
-async def session() -> FakeSession:
-    return FakeSession()
+async def session(monkeypatch: pytest.MonkeyPatch) -> FakeSession:
+    made = FakeSession()
+    monkeypatch.setattr("launcher.processes.stop.send", made.send)
+    return made

@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import Callable
-from typing import Any
+from dataclasses import replace
+from typing import Any, cast
 
 from launcher.processes.exit import Exit
 from launcher.processes.table import Process
@@ -13,14 +14,15 @@ from launcher.profile.node import Node, Ready
 from launcher.spawn_server.spawner import SpawnError
 from launcher.status import NodeFault, NodeState, Severity
 from launcher.supervisor.node import SupervisedNode
-from launcher.supervisor.readiness import NotBroughtUpError, Seen, UnwatchableError
+from launcher.supervisor.readiness import NotBroughtUpError, UnwatchableError
+from launcher.supervisor.words import Seen
 from tests.unit.manual_clock import ManualClock, settle
 
 PLAN = Node(name="sonar", exec=("sonar",), restart="on-failure")
 
 
 def planned(**changes: Any) -> Node:
-    return PLAN.model_copy(update=changes)
+    return replace(PLAN, **changes)
 
 
 class FakeProcess:
@@ -41,11 +43,11 @@ class FakeProcess:
     def left(self) -> list[Process]:
         return [Process(pid, "fake", "S", 1, self.pid, self.pid, pid, 0) for pid in self._living]
 
-    def signal(self, process: Process, number: signal.Signals) -> None:
-        self.heard.append((process.pid, number))
+    def hear(self, pid: int, number: signal.Signals) -> None:
+        self.heard.append((pid, number))
         kills = number == signal.SIGKILL and not self.immortal
-        if number in self._living[process.pid] or kills:
-            self.end(process.pid, Exit(None, number.name))
+        if number in self._living[pid] or kills:
+            self.end(pid, Exit(None, number.name))
 
     def end(self, pid: int, how: Exit) -> None:
         del self._living[pid]
@@ -61,9 +63,10 @@ class FakeProcess:
 
 
 class FakeSession:
-    """Fits `launcher.supervisor.readying.NodeContext`."""
+    """Does what a node asks of its session, of the log of that, and of what tells that nodes are ready."""
 
     def __init__(self) -> None:
+        self.log = self.readiness = self
         self.clock = ManualClock()
         self.started: list[FakeProcess] = []
         self.ends_by: set[int] = {signal.SIGINT}
@@ -81,6 +84,9 @@ class FakeSession:
         self.fault: NodeFault | None = None
         self.early: NodeFault | None = None
 
+    def send(self, process: Process, number: signal.Signals, _wakes: signal.Signals) -> None:
+        self.process.hear(process.pid, number)
+
     @property
     def process(self) -> FakeProcess:
         return self.started[-1]
@@ -92,7 +98,7 @@ class FakeSession:
         self.started.append(FakeProcess(number, self.ends_by, self.grandchild_ends_by))
         return self.process
 
-    async def ready(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
+    async def until(self, condition: Ready, tell: Callable[[Seen], None]) -> None:
         self.tell = tell
         self.awaited.append(condition)
         if not self.watchable:
@@ -127,7 +133,7 @@ async def crash(session: FakeSession) -> None:
 
 
 async def started(session: FakeSession, plan: Node = PLAN) -> SupervisedNode:
-    node = SupervisedNode(plan, session)
+    node = SupervisedNode(plan, cast("Any", session))
     node.start()
     await settle()
     return node

@@ -11,7 +11,8 @@ from cli.health import well
 from launcher.processes.exit import Exit
 from launcher.profile.node import Node, Ready
 from launcher.status import IDLE, STUCK, NodeFault, NodeState, Severity
-from launcher.supervisor.readiness import NotBroughtUpError, Seen
+from launcher.supervisor.readiness import NotBroughtUpError
+from launcher.supervisor.words import Seen
 from tests.unit.launcher.supervisor.fake_session import PLAN, FakeSession, crash, planned, started
 from tests.unit.manual_clock import settle
 from text.i18n import localized
@@ -250,9 +251,8 @@ async def test_a_process_that_cannot_be_started_is_tried_again(session: FakeSess
 
 OPTIONAL = planned(optional=True)
 MODULE = planned(run="nodes.sonar", exec=None)
-PUBLISHES, SERVES, IS_THERE = (
-    planned(ready=Ready.model_validate({kind: "/x"})) for kind in ("topic", "service", "node")
-)
+PUBLISHES, SERVES = planned(ready=Ready(topic="/x")), planned(ready=Ready(service="/x"))
+IS_THERE = planned(ready=Ready(node="/x"))
 ABSENT = "deck: command not found: sonar"
 LESSON_GOES_ON = "not installed; the lesson continues without it"
 
@@ -265,9 +265,9 @@ LESSON_GOES_ON = "not installed; the lesson continues without it"
         (PLAN, 127, "", "FAILED", "exit code 127"),
         (PLAN, 127, ABSENT, "FAILED", "sonar is not installed"),
         (OPTIONAL, 127, ABSENT, "EXITED", "sonar is not installed; the lesson continues without it"),
-        (OPTIONAL.model_copy(update={"restart": "never"}), 127, "x", "EXITED", "exit code 127: x"),
+        (replace(OPTIONAL, restart="never"), 127, "x", "EXITED", "exit code 127: x"),
         (MODULE, 2, "no such port", "FAILED", "exit code 2: no such port"),
-        (MODULE.model_copy(update={"restart": "always"}), 2, "", "FAILED", "exit code 2"),
+        (replace(MODULE, restart="always"), 2, "", "FAILED", "exit code 2"),
         (PUBLISHES, 0, "", "FAILED", "ended by itself, but should still publish /x"),
         (SERVES, 0, "", "FAILED", "ended by itself, but should still serve /x"),
         (IS_THERE, 0, "", "EXITED", "ended"),

@@ -19,7 +19,6 @@ from launcher.supervisor.restart_policy import (
     MAX_CRASHES,
     STABLE_S,
     Again,
-    Finished,
     GivenUp,
     RestartPolicy,
 )
@@ -170,9 +169,9 @@ async def test_an_end_of_which_nobody_tells_is_looked_up_and_not_waited_for(sess
 @pytest.mark.parametrize(
     ("kind", "clean", "verdict"),
     [
-        ("never", True, Finished()),
+        ("never", True, None),
         ("never", False, GivenUp(1)),
-        ("on-failure", True, Finished()),
+        ("on-failure", True, None),
         ("on-failure", False, Again(1.0)),
         ("always", True, Again(1.0)),
         ("always", False, Again(1.0)),

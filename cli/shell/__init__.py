@@ -1,1 +1,0 @@
-"""`deck shell`: a shell in the domain of the lesson, and its words on what is not here."""
