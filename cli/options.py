@@ -135,7 +135,9 @@ def add_graph(parser: ArgumentParser, help_text: str = "") -> None:
 def add_screen(parser: ArgumentParser) -> None:
     """Add what the screen begins with, and the limit for its pictures."""
     parser.add_argument(
-        "--wall", action="store_true", help=_("begin with the wall: big numbers and a big picture, for a projector")
+        "--wall",
+        action="store_true",
+        help=_("begin with the wall: a few panels as large as possible, for a projector"),
     )
     parser.add_argument(
         "--bandwidth",

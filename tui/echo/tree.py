@@ -103,7 +103,7 @@ class EchoTree(Rows):
     @property
     def _line(self) -> EchoLine | None:
         """The line at the cursor."""
-        index = self._index(self._chosen)
+        index = self._index(self.chosen)
         return None if index is None else self._lines[index]
 
     @property
@@ -156,7 +156,7 @@ class EchoTree(Rows):
     def _begin(self, topic: str) -> None:
         self._topic = topic
         self.message = self._waiting = None
-        self._lines, self._rows, self._chosen = [], (), ""
+        self._lines, self._rows, self.chosen = [], (), ""
         self.pause(False)
         self.scroll_to(0, 0, animate=False, immediate=True)
 
@@ -165,7 +165,7 @@ class EchoTree(Rows):
             self._lines = echo_lines(self.message, self._folds.setdefault(self._topic, {}).get)
             texts = (f"{_margin(line)}{line.label} {line.text}" for line in self._lines)
             rows = [Row(_key(line.path), (Cell(text),)) for line, text in zip(self._lines, texts, strict=True)]
-            self.show([Column("")], rows, near=self._index(self._chosen) or 0)
+            self.show([Column("")], rows, near=self._index(self.chosen) or 0)
 
     def _set_open(self, path: Path, opened: bool) -> None:
         self._folds.setdefault(self._topic, {})[path] = opened
@@ -182,7 +182,7 @@ class EchoTree(Rows):
         if index >= len(self._lines):
             return Strip.blank(width, self.rich_style)
         segments = self._segments(self._lines[index])
-        if self._chosen and self._rows[index].key == self._chosen and self.has_focus:
+        if self.chosen and self._rows[index].key == self.chosen and self.has_focus:
             cursor = self.get_component_rich_style("echo-tree--cursor")
             return cut([Segment(text, cursor) for text, _, _ in segments], width, cursor)
         return cut(segments, width, self.rich_style)

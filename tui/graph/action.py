@@ -21,6 +21,7 @@ from tui.dialogs.dialog import Dialog, answers
 from tui.graph.ask import Answer, AskPane
 from tui.graph.pane import LONGEST
 from tui.widgets.rows import Cell, Column, Row
+from tui.yaml_form.form import submit_form
 
 STATES = {
     GoalStatus.SENDING: ("◌", N_("sending"), "dim"),
@@ -72,7 +73,7 @@ class ActionPane(AskPane):
     def answer(self) -> Answer:
         goal = self.chosen
         if goal is None:
-            way_out = _("{key} sends what is filled in.").format(key=self.submit_key)
+            way_out = _("{key} sends what is filled in.").format(key=self.deck.keys_of(submit_form)[0])
             return _("Feedback and result"), self.name_shown, (_("no goal has been sent yet"), way_out)
         name = f"{self.name_shown} {_key(goal)}"
         state = f"{_name(goal)} {_words(goal)}"

@@ -17,7 +17,7 @@ from tui.graph.index import GraphKind, GraphPlace
 from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
 from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Column, Row, Rows
-from tui.yaml_form.form import YamlForm, submit_form
+from tui.yaml_form.form import YamlForm
 
 Answer: TypeAlias = "tuple[str, str, Mapping[str, Any] | tuple[str, str]]"
 
@@ -67,10 +67,6 @@ class AskPane(GraphPane):
 
     form = getters.query_one(YamlForm)
     asked_rows = getters.query_one(".asked", Rows)
-
-    @property
-    def submit_key(self) -> str:
-        return self.deck.keys_of(submit_form)[0]
 
     def ends(self) -> tuple[Sequence[str], Sequence[str], Sequence[str]] | None:
         """Return the types, the servers and the clients of what is shown; None if it has left the graph."""
@@ -140,8 +136,8 @@ class AskPane(GraphPane):
             rows = [link(GraphPlace(GraphKind.TYPE, name), "type", _("type")) for name in types]
             rows += node_links(servers, "serves", _("serves it"))
             rows += node_links(clients, "calls", _(self.calls_it))
-        self.query_one(NameHead).show(self.name_shown, *told)
-        self.query_one(GraphLinks).show_links(rows)
+        self.head.show(self.name_shown, *told)
+        self.links.show_links(rows)
         columns, asked = self.asked()
         self.asked_rows.display = bool(asked)
         self.asked_rows.show(columns, asked)

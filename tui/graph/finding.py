@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from textual.app import ComposeResult
 from textual.content import Content
-from textual.widgets import Static
 
 from graph.data import GraphUpdate
 from graph.findings.finding import GraphFinding
@@ -12,8 +10,7 @@ from text import ros2_words
 from text.i18n import _, localized
 from text.plain import plain
 from tui.graph.index import GraphIndex, GraphKind, GraphPlace, head_words
-from tui.graph.pane import GraphLinks, GraphPane, heading, link, node_links
-from tui.widgets.name_head import NameHead
+from tui.graph.pane import GraphPane, heading, link, node_links
 
 LONGEST = 600
 
@@ -31,20 +28,12 @@ class FindingPane(GraphPane):
     """Head, what is wrong, what to do, and links."""
 
     DEFAULT_CSS = """
-    FindingPane {
-        #finding-words { width: 1fr; height: auto; max-height: 60%; padding: 0 1 1 1; }
-        GraphLinks { height: 1fr; }
-    }
+    FindingPane EmptyNotice { max-height: 60%; padding: 0 1 1 1; }
     """
 
     def __init__(self, index: GraphIndex, *, id: str) -> None:
         super().__init__(id=id)
         self._index = index
-
-    def compose(self) -> ComposeResult:
-        yield NameHead()
-        yield Static(id="finding-words", markup=False)
-        yield GraphLinks()
 
     def ros2_command(self) -> str:
         finding = self._index.finding(self.name_shown)
@@ -62,7 +51,7 @@ class FindingPane(GraphPane):
         finding = self._index.finding(self.name_shown) if self.is_mounted else None
         if finding is None:
             return
-        self.query_one(NameHead).show(finding.place.name, head_words(finding))
+        self.head.show(finding.place.name, head_words(finding))
         lines = [
             Content.styled(_("What is wrong"), "$text-muted"),
             Content(plain(localized(finding.what), LONGEST)),
@@ -70,10 +59,10 @@ class FindingPane(GraphPane):
             Content.styled(_("What to do"), "$text-muted"),
             Content(plain(localized(finding.mend), LONGEST)),
         ]
-        self.query_one("#finding-words", Static).update(Content("\n").join(lines))
+        self.notice.update(Content("\n").join(lines))
         goal = goal_of(finding, self.graph_now)
         rows = [heading(_("Where")), link(goal, "where")]
         others = [name for name in finding.nodes if GraphPlace(GraphKind.NODE, name) != goal]
         if others:
             rows += [heading(_("Nodes that take part")), *node_links(others, "nodes")]
-        self.query_one(GraphLinks).show_links(rows)
+        self.links.show_links(rows)

@@ -22,10 +22,9 @@ from tui.dialogs.choice import ChoiceScreen
 from tui.frame.host import host_of
 from tui.graph import parameter_changes
 from tui.graph.index import GraphKind, GraphPlace
-from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading, link
+from tui.graph.pane import LONGEST, GraphPane, heading, link
 from tui.graph.parameters import GraphParameters
 from tui.log_level import change_log_level
-from tui.widgets.name_head import NameHead
 from tui.widgets.node_words import memory, percent, state_words, why
 from tui.widgets.rows import Row, Rows
 
@@ -35,12 +34,11 @@ class NodePane(GraphPane):
 
     DEFAULT_CSS: ClassVar[str] = """
     NodePane {
-        GraphLinks { height: 1fr; }
         GraphParameters { height: 1fr; display: none; border-top: solid $panel; }
         &.-parameters GraphParameters { display: block; }
     }
     .-low NodePane.-parameters, .-flat NodePane.-parameters {
-        GraphLinks, #node-words { display: none; }
+        GraphLinks { display: none; }
         GraphParameters { border-top: none; }
     }
     """
@@ -48,12 +46,9 @@ class NodePane(GraphPane):
     """Those of its lifecycle that are possible now; empty if it has none."""
 
     def compose(self) -> ComposeResult:
-        yield NameHead()
-        yield EmptyNotice(id="node-words")
-        yield GraphLinks()
+        yield from super().compose()
         yield GraphParameters()
 
-    links = getters.query_one(GraphLinks)
     parameters = getters.query_one(GraphParameters)
 
     @property
@@ -122,14 +117,14 @@ class NodePane(GraphPane):
             status = None
         lifecycle = lifecycle_of(update, self.name_shown)
         facts = (process_words(status), lifecycle_words(lifecycle))
-        self.query_one(NameHead).show(self.name_shown, *facts)
+        self.head.show(self.name_shown, *facts)
         possible = () if lifecycle is None else lifecycle.transitions
         if possible != self.transitions:
             self.transitions = possible
             self.screen.refresh_bindings()
         if self.shows_parameters:
             self.parameters.see(() if node is None else node.processes)
-        words = self.query_one(EmptyNotice)
+        words = self.notice
         if update is None or node is None:
             gone = _("It was stopped, or cannot be reached any more. Below is what it last did.")
             if status is not None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from textual import getters
+from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.timer import Timer
 from textual.widget import Widget
@@ -149,6 +151,14 @@ class GraphPane(Vertical, Working):
     everything = False
     """Whether what belongs to ROS itself is shown."""
     _settling: Timer | None = None
+    head = getters.query_one(NameHead)
+    notice = getters.query_one(EmptyNotice)
+    links = getters.query_one(GraphLinks)
+
+    def compose(self) -> ComposeResult:
+        yield NameHead()
+        yield EmptyNotice()
+        yield GraphLinks()
 
     @property
     def deck(self) -> Host:
@@ -188,7 +198,7 @@ class GraphPane(Vertical, Working):
         self.redraw()
 
     def first(self) -> Widget:
-        return self.query_one(GraphLinks)
+        return self.links
 
     def warn(self, words: str) -> None:
         self.notify(plain(words, LONGEST), severity="warning", markup=False)

@@ -28,6 +28,7 @@ from tui.graph.pane import LONGEST
 from tui.graph.parameters import typed
 from tui.widgets.field import Field
 from tui.widgets.rows import Cell, Column, Row
+from tui.yaml_form.form import submit_form
 
 USUAL_S = f"{ANSWER_WITHIN_S:g}"
 LEAST_S, MOST_S = 0.1, 3600.0
@@ -171,7 +172,7 @@ class ServicePane(AskPane):
     def answer(self) -> Answer:
         call = next((call for call in self.calls if str(call.number) == self.asked_rows.chosen), None)
         if call is None:
-            way_out = _("{key} calls it with what is filled in.").format(key=self.submit_key)
+            way_out = _("{key} calls it with what is filled in.").format(key=self.deck.keys_of(submit_form)[0])
             return _("Response"), self.name_shown, (_("not called yet"), way_out)
         name, result, most = f"{self.name_shown} {call.number}", call.result, decimal(f"{call.timeout_s:g}")
         if result is None and call.given_up:

@@ -5,17 +5,14 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterator
 
-from textual.app import ComposeResult
-
 from graph.messages.browse import MessageField, definition
 from graph.messages.types import UnknownTypeError
 from text import ros2_words
 from text.i18n import N_, _, localized
 from text.plain import plain
 from tui.graph.index import GraphKind, GraphPlace
-from tui.graph.pane import LONGEST, EmptyNotice, GraphLinks, GraphPane, heading, link
+from tui.graph.pane import LONGEST, GraphPane, heading, link
 from tui.graph.parameters import typed
-from tui.widgets.name_head import NameHead
 from tui.widgets.rows import Cell, Row
 
 WIDEST = 2**63 - 1
@@ -32,15 +29,9 @@ PARTS = {
 class TypePane(GraphPane):
     """Fields with their types, defaults and bounds; Enter on one that holds a message goes to its type."""
 
-    DEFAULT_CSS = "TypePane GraphLinks { height: 1fr; }"
     _loaded = ""
     """The type whose package is imported."""
     _failure = ""
-
-    def compose(self) -> ComposeResult:
-        yield NameHead()
-        yield EmptyNotice()
-        yield GraphLinks()
 
     def ros2_command(self) -> str:
         return ros2_words.interface(self.name_shown) if self.name_shown else ""
@@ -53,13 +44,13 @@ class TypePane(GraphPane):
     def redraw(self) -> None:
         if not self.name_shown or not self.is_mounted:
             return
-        self.query_one(NameHead).show(self.name_shown)
-        words = self.query_one(EmptyNotice)
+        self.head.show(self.name_shown)
+        words = self.notice
         words.display = bool(self._failure)
         if self._failure:
             words.show(_("this type cannot be inspected"), localized(self._failure))
         fields = field_rows(self.name_shown) if self._loaded == self.name_shown else ()
-        self.query_one(GraphLinks).show_links([*fields, *self._users()])
+        self.links.show_links([*fields, *self._users()])
 
     def load(self) -> None:
         self.run_worker(self._load(self.name_shown), group="load", exclusive=True)

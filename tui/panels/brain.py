@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from textual.app import ComposeResult
-
 from graph.data import GraphUpdate
 from robot.topics import BRAIN_STATE
 from text.i18n import N_
@@ -56,6 +54,7 @@ class BrainView(Drawing):
 class BrainPanel(Panel):
     """What /brain_state says."""
 
+    view = BrainView
     title = N_("Brain")
     least = 2
     weight = 2
@@ -64,9 +63,6 @@ class BrainPanel(Panel):
     def useful(self, rows: int) -> int:
         """State, the last answer and the budget."""
         return min(rows, 3)
-
-    def compose(self) -> ComposeResult:
-        yield BrainView()
 
     def followed(self) -> set[str]:
         """Every report: several nodes write there."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from textual.app import ComposeResult
-
 from graph.data import GraphUpdate, Sample
 from robot.topics import LLM_RAW_JSON
 from text.i18n import N_, _
@@ -23,6 +21,7 @@ if TYPE_CHECKING:
 class ComposerPanel(Panel):
     """The trail of the newest message: accepted or refused, drive, wheels, head."""
 
+    view = Outcome
     title = N_("LLM commands")
     least = 4
     weight = 5
@@ -32,9 +31,6 @@ class ComposerPanel(Panel):
         super().__init__()
         self._trail: OutcomeTrail | None = None
         self._newest: dict[str, Sample] = {}
-
-    def compose(self) -> ComposeResult:
-        yield Outcome()
 
     def on_mount(self) -> None:
         self._say()

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from textual.app import ComposeResult
-
 from graph.data import GraphUpdate
 from robot.joints import HEAD_PAN, HEAD_TILT
 from robot.topics import HEAD_STATE, LLM_RESULT
@@ -178,6 +176,7 @@ def _field(pose: HeadReading, told: HeadReading | None, columns: int, rows: int)
 class HeadPanel(Panel):
     """Pan and tilt."""
 
+    view = HeadView
     title = N_("Head")
     least = 3
     weight = 4
@@ -185,9 +184,6 @@ class HeadPanel(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._joints = Joints(HEAD_STATE, (HEAD_PAN, HEAD_TILT))
-
-    def compose(self) -> ComposeResult:
-        yield HeadView()
 
     def watched(self) -> set[str]:
         return {HEAD_STATE}

@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from textual.app import ComposeResult
-
 from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
 from robot.topics import GOAL_POSE, MAP, MOCK_POSE, ODOMETRY, SONAR_FRONT, SONAR_REAR
@@ -222,6 +220,7 @@ SONARS = {FRONT: SONAR_FRONT, REAR: SONAR_REAR}
 class MapPanel(Panel):
     """The room from above."""
 
+    view = RoomMap
     title = N_("Map")
     least = 6
     weight = 6
@@ -232,9 +231,6 @@ class MapPanel(Panel):
         self._pose_topic = ""
         self._heard_s = -math.inf
         self._placeholder: Placeholder | None = None
-
-    def compose(self) -> ComposeResult:
-        yield RoomMap()
 
     def watched(self) -> set[str]:
         """The topics of the map; the path is built from the poses received."""

@@ -7,9 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 from rich.cells import cell_len
+from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.content import Content
 from textual.visual import VisualType
+from textual.widget import Widget
 
 from graph.data import GraphUpdate, Sample, TopicRow, Trouble
 from text.i18n import _
@@ -34,6 +36,8 @@ class Panel(Vertical):
     }
     """
 
+    view: ClassVar[type[Widget]] = Widget
+    """Made for it, unless `compose` says more."""
     title: ClassVar[str] = ""
     """Marked by `N_`."""
     least: ClassVar[int] = 2
@@ -47,6 +51,9 @@ class Panel(Vertical):
     _pages: Sequence[str] = ()
     _fault = ""
     """Shown in place of the widget while it fails."""
+
+    def compose(self) -> ComposeResult:
+        yield self.view()
 
     def on_mount(self) -> None:
         self._entitle()

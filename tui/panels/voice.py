@@ -10,7 +10,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from rich.cells import cell_len
-from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.sound import RATE_HZ, SILENCE_DBFS, level_dbfs, samples_of, text_in
@@ -224,6 +223,7 @@ SILENT_S = 2.0
 class VoicePanel(Panel):
     """The conversation so far."""
 
+    view = VoiceView
     title = N_("Voice")
     least = 2
     weight = 3
@@ -232,9 +232,6 @@ class VoicePanel(Panel):
     def __init__(self) -> None:
         super().__init__()
         self._placeholder: dict[str, Placeholder | None] = {}
-
-    def compose(self) -> ComposeResult:
-        yield VoiceView()
 
     def followed(self) -> set[str]:
         return {*TOPICS, HEARD}

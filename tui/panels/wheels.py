@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from rich.cells import cell_len
-from textual.app import ComposeResult
 
 from graph.data import GraphUpdate
 from robot.joints import REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL, STEERING
@@ -245,6 +244,7 @@ DRIVE_TYPE = "ackermann_msgs/msg/AckermannDriveStamped"
 class WheelsPanel(Panel):
     """The rear wheels and the steering, from above."""
 
+    view = WheelsView
     title = N_("Wheels")
     least = 4
     weight = 4
@@ -259,9 +259,6 @@ class WheelsPanel(Panel):
         self._joints = Joints(WHEEL_COMMANDS, (REAR_LEFT_WHEEL, REAR_RIGHT_WHEEL))
         self._placeholder: Placeholder | None = None
         """Shown instead of the drive commands."""
-
-    def compose(self) -> ComposeResult:
-        yield WheelsView()
 
     def watched(self) -> set[str]:
         return {WHEEL_COMMANDS, DRIVE}

@@ -65,10 +65,6 @@ class TopicPlot(Drawing):
         return {series.field.topic for series in self._series}
 
     @property
-    def is_full(self) -> bool:
-        return len(self._series) >= len(NAMES)
-
-    @property
     def paused(self) -> bool:
         """Whether the plot is paused; new messages are kept meanwhile."""
         return self._paused_s is not None
@@ -89,7 +85,7 @@ class TopicPlot(Drawing):
         """
         kept = [series for series in self._series if series.field != wanted]
         if len(kept) == len(self._series):
-            if self.is_full:
+            if len(kept) >= len(NAMES):
                 return False
             place = min(set(range(len(NAMES))) - {NAMES.index(s.letter) for s in kept})
             kept.append(Series(wanted, NAMES[place], LOOKS[place], History()))

@@ -23,7 +23,7 @@ from tui.session.messages import GraphChanged, LanguageChanged, SessionChanged
 from tui.topics.actions import TOPICS_ACTIONS
 from tui.topics.detail import TopicDetail, carries_images, is_image
 from tui.topics.echo_filter import EchoFilter
-from tui.topics.plot import TopicPlot
+from tui.topics.plot import NAMES, TopicPlot
 from tui.topics.plot_history import PlotField
 from tui.topics.table import TopicsTable, why_empty
 from tui.widgets.field import Field
@@ -302,7 +302,7 @@ class TopicsScreen(DeckScreen):
         refusal = ""
         if not field.topic or not field.path or echo.message is None or field.number(echo.message) is None:
             refusal = _("Put the cursor on a number first: Tab goes to the message.")
-        elif self.plot.is_full and field not in self.plot.fields:
+        elif len(self.plot.fields) >= len(NAMES) and field not in self.plot.fields:
             refusal = _("There is no room for more fields: remove one first.")
         if refusal:
             self.notify(refusal, severity="warning", markup=False)

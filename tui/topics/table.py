@@ -291,12 +291,12 @@ class TopicsTable(Rows):
         return super().render_line(y)
 
     def _arrange(self) -> None:
-        had, at = self._chosen, self._index(self._chosen)
+        had, at = self.chosen, self._index(self.chosen)
         in_sight = at is not None and 0 <= at - self.scroll_offset.y < self.size.height - 1
         self.shown = self.order.arranged(self._topics)
         columns, rows = self._laid_out()
         self.show(columns, rows, near=at or 0)
-        now = self._index(self._chosen)
+        now = self._index(self.chosen)
         if now is None and had:
             self.post_message(self.Highlighted(self, ""))
         elif in_sight and now is not None and now != at:

@@ -104,7 +104,8 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._placed_in = 0
         """The width for which the columns were laid out."""
         self._rows: tuple[Row, ...] = ()
-        self._chosen = ""
+        self.chosen = ""
+        """Key of the chosen row, empty if there is none."""
         self._moved = False
 
     def show(self, columns: Sequence[Column], rows: Sequence[Row], *, near: int = 0) -> None:
@@ -119,19 +120,15 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         if len(before) != len(self._rows):
             self.virtual_size = Size(0, self._top + len(self._rows))
             self.refresh()
-        if self._index(self._chosen) is None:
+        if self._index(self.chosen) is None:
             self._choose_near(max(0, min(near, len(self._rows) - 1)))
         if self._widths:
             self._refresh_changed(before)
 
     @property
-    def chosen(self) -> str:
-        return self._chosen
-
-    @property
     def is_chosen_cut(self) -> bool:
         """Whether a text of the chosen row does not fit into its column."""
-        index = self._index(self._chosen)
+        index = self._index(self.chosen)
         if index is None:
             return False
         if self._placed_in != self.scrollable_size.width:
@@ -169,35 +166,35 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         if index >= len(self._rows):
             return Strip.blank(width, base)
         row = self._rows[index]
-        chosen = bool(row.key) and row.key == self._chosen
+        chosen = bool(row.key) and row.key == self.chosen
         if chosen:
             base += self.get_component_rich_style("rows--cursor")
         return self._strip(row.cells, "▶ " if chosen else "  ", base, width, plain=chosen)
 
     def action_move(self, by: int) -> None:
         self._moved = True
-        at = self._index(self._chosen)
+        at = self._index(self.chosen)
         self._choose_near(max(0, min((at or 0) + by, len(self._rows) - 1)), -1 if by < 0 else 1)
 
     def action_page(self, pages: int) -> None:
         self.action_move(pages * max(1, self.size.height - self._top - 1))
 
     def action_open(self) -> None:
-        if self._chosen:
-            self.post_message(self.Opened(self, self._chosen))
+        if self.chosen:
+            self.post_message(self.Opened(self, self.chosen))
 
     def on_click(self, event: Click) -> None:
         index = event.y - self._top + self.scroll_offset.y
         if event.y >= self._top and index < len(self._rows) and self._rows[index].key:
             self._moved = True
-            again = self._rows[index].key == self._chosen
+            again = self._rows[index].key == self.chosen
             self._choose(index)
             if again and event.chain > 1:
                 self.action_open()
 
     def on_resize(self) -> None:
         self._place()
-        index = self._index(self._chosen)
+        index = self._index(self.chosen)
         if index is not None:
             # What was chosen while there was little room may have scrolled off the rows above it.
             self._bring_into_view(index, self.scroll_offset.y if self._moved else 0)
@@ -207,10 +204,10 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         self._place()
 
     def on_focus(self) -> None:
-        self._refresh_row(self._index(self._chosen))
+        self._refresh_row(self._index(self.chosen))
 
     def on_blur(self) -> None:
-        self._refresh_row(self._index(self._chosen))
+        self._refresh_row(self._index(self.chosen))
 
     def _place(self) -> None:
         self._placed_in = self.scrollable_size.width
@@ -228,13 +225,13 @@ class Rows(OneStyle, ScrollView, can_focus=True):
         if found is not None:
             self._choose(found)
         elif not any(row.key for row in self._rows):
-            self._chosen = ""
+            self.chosen = ""
 
     def _choose(self, index: int) -> None:
         key = self._rows[index].key
-        if key != self._chosen:
-            self._refresh_row(self._index(self._chosen))
-            self._chosen = key
+        if key != self.chosen:
+            self._refresh_row(self._index(self.chosen))
+            self.chosen = key
             self._refresh_row(index)
             self.post_message(self.Highlighted(self, key))
         self._bring_into_view(index, self.scroll_offset.y)
