@@ -34,7 +34,6 @@ from tui.themes import HIGH_CONTRAST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 LOOK_S = 0.5
 """How often to check that the terminal is still there."""
@@ -145,26 +144,6 @@ def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogL
     """Return stray output as log lines of the node `deck`."""
     now_s = clock.now()
     return [LogLine("deck", first + at, now_s, severity, plain(text), source="deck") for at, text in enumerate(texts)]
-
-
-def run_screen(
-    profile: Path | None,
-    *,
-    hardware: str = "mock",
-    overrides: Sequence[str] = (),
-    domain: int | None = None,
-    lang: str | None = None,
-    attach: str | None = None,
-    bandwidth: int | None = None,
-    wall: bool = False,
-) -> int:
-    """Show the screen until the user leaves it; return the exit code of the program.
-
-    Starts `profile` if there is one, shows the session `attach` if that is given, and otherwise
-    opens the picker; `wall` begins with the wall. `bandwidth` is as in `run_live`.
-    """
-    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain, wall=wall)
-    return run_live(request, lang, bandwidth)
 
 
 def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = None) -> int:
