@@ -34,7 +34,7 @@ def open_command(options: Namespace) -> int:
 
     overrides = tuple(options.overrides)
     request = OpenRequest(profile, None, options.hardware, overrides, options.domain, wall=options.wall)
-    return run_live(request, options.lang, options.bandwidth)
+    return run_live(request, options.lang, options.bandwidth, options.pixels)
 
 
 def profile_or_command(name: str) -> Path:
@@ -71,7 +71,7 @@ def attach_command(options: Namespace) -> int:
     from tui.session.requests import OpenRequest
 
     request = OpenRequest(attach=options.name or session.name, wall=options.wall)
-    return run_live(request, options.lang, options.bandwidth)
+    return run_live(request, options.lang, options.bandwidth, options.pixels)
 
 
 def _watch_options(parser: Parser) -> None:
@@ -90,7 +90,7 @@ def watch_command(options: Namespace) -> int:
     from tui.session.requests import OpenRequest, WatchRequest
 
     order = OpenRequest(watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall)
-    return run_live(order, options.lang, options.bandwidth)
+    return run_live(order, options.lang, options.bandwidth, options.pixels)
 
 
 def has_terminal() -> bool:
