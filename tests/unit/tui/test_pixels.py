@@ -7,6 +7,8 @@ import pytest
 
 from tui.terminal.pixels import FIRST, Graphics, PixelPicture, Pixels, are_wanted, encoded, graphics_of
 from tui.terminal.terminal_diff import TerminalDiff
+from tui.widgets.canvas import Canvas
+from tui.widgets.drawing import LOOKS
 
 CELL, KITTY = "\x1b[6;20;10t", "\x1b_Gi=1;OK\x1b\\"
 XTERM = ("\x1b[?1;0;256S", "\x1b[?2;0;1000;800S", "\x1b[?63;1;2;4;6;9;15;16;22;28c")
@@ -113,3 +115,15 @@ async def test_noise_that_would_fill_the_line_is_not_sent() -> None:
     pixels, halves = Pixels(graphics=Graphics("sixel", (10, 20))), np.zeros((50, 80, 3), np.uint8)
     assert await pixels.made(noise, halves) is None
     assert await pixels.made(noise // 255, halves) is not None
+
+
+def test_each_dot_of_a_canvas_in_pixels_has_its_own_colour_and_a_sign_is_a_spot() -> None:
+    canvas = Canvas(8, 4)
+    canvas.line((0, 0), (15, 0), "good")
+    canvas.sign((8, 12), "●", "bad")
+    rgb = canvas.rgb({look: (at, 9, 9) for at, look in enumerate(("", *LOOKS))}, (0, 0, 0))
+    assert rgb.shape == (16, 16, 3)
+    good, bad = 1 + LOOKS.index("good"), 1 + LOOKS.index("bad")
+    assert rgb[0, 0].tolist() == [good, 9, 9]
+    assert rgb[12, 8].tolist() == [bad, 9, 9]
+    assert rgb[5, 5].tolist() == [0, 0, 0]
