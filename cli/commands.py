@@ -63,7 +63,7 @@ COMMANDS = {
 }
 HELP = "help"
 """`deck help` and `deck help run` are `deck --help` and `deck run --help`."""
-WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--lang")
+WITH_VALUE = ("--hardware", "--set", "--domain", "--discovery", "--bandwidth", "--pixels", "--lang")
 """Options that may come before the command word."""
 _ANNOUNCED: dict[str, tuple[Sequence[Callable[[Parser], None]], Work]] = {}
 

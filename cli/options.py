@@ -145,6 +145,14 @@ def add_screen(parser: ArgumentParser) -> None:
         type=bandwidth,
         help=_("limit for pictures in the terminal, kB/s, or off; by default 40 over SSH, else off"),
     )
+    parser.add_argument(
+        "--pixels",
+        choices=("auto", "on", "off"),
+        help=_(
+            "pictures in true pixels: where the terminal has them and no limit is set (auto, the default), "
+            "also with a limit, or never"
+        ),
+    )
 
 
 def add_json(parser: ArgumentParser) -> None:

@@ -88,7 +88,7 @@ def replay_command(options: Namespace) -> int:
     from tui.live import run_live
 
     order = ReplayRequest(path, options.rate, options.loop, options.start)
-    return run_live(OpenRequest(replay=order, wall=options.wall), options.lang, options.bandwidth)
+    return run_live(OpenRequest(replay=order, wall=options.wall), options.lang, options.bandwidth, options.pixels)
 
 
 def _list_recordings() -> int:

@@ -29,18 +29,12 @@ def open_command(options: Namespace) -> int:
     profile = None if options.profile is None else profile_or_command(options.profile)
     if not has_terminal():
         return _without_screen(options)
-    from tui.live import run_screen
+    from tui.live import run_live
+    from tui.session.requests import OpenRequest
 
-    return run_screen(
-        profile,
-        hardware=options.hardware,
-        overrides=tuple(options.overrides),
-        domain=options.domain,
-        lang=options.lang,
-        attach=None,
-        bandwidth=options.bandwidth,
-        wall=options.wall,
-    )
+    overrides = tuple(options.overrides)
+    request = OpenRequest(profile, None, options.hardware, overrides, options.domain, wall=options.wall)
+    return run_live(request, options.lang, options.bandwidth, options.pixels)
 
 
 def profile_or_command(name: str) -> Path:
@@ -68,11 +62,11 @@ def attach_command(options: Namespace) -> int:
 
     # A wrong name is reported before the screen is opened.
     session = find_running(options.name).session
-    from tui.live import run_screen
+    from tui.live import run_live
+    from tui.session.requests import OpenRequest
 
-    return run_screen(
-        None, lang=options.lang, attach=options.name or session.name, bandwidth=options.bandwidth, wall=options.wall
-    )
+    request = OpenRequest(attach=options.name or session.name, wall=options.wall)
+    return run_live(request, options.lang, options.bandwidth, options.pixels)
 
 
 def _watch_options(parser: Parser) -> None:
@@ -90,7 +84,7 @@ def watch_command(options: Namespace) -> int:
     from tui.session.requests import OpenRequest, WatchRequest
 
     order = OpenRequest(watch=WatchRequest(domain, options.discovery or "localhost"), wall=options.wall)
-    return run_live(order, options.lang, options.bandwidth)
+    return run_live(order, options.lang, options.bandwidth, options.pixels)
 
 
 def has_terminal() -> bool:

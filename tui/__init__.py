@@ -1,5 +1,5 @@
 """The user interface: the app, its screens and its widgets, built on Textual.
 
-`live.run_screen` runs it on a terminal. Which folder may import which is a contract in
+`live.run_live` runs it on a terminal. Which folder may import which is a contract in
 `pyproject.toml`: screens know the app only as `frame.host.Host`, and none of them imports it.
 """

@@ -43,6 +43,7 @@ from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
 from tui.terminal.harmless import Harmless
 from tui.terminal.key_queue import KeyQueue
+from tui.terminal.pixels import Pixels
 from tui.terminal.stall_detector import KeyStallDetector
 from tui.themes import HIGH_CONTRAST, after, few_colours
 from tui.viewing.view import View
@@ -109,6 +110,7 @@ class DeckApp(App[int], Acting):
         driver_class: type[Driver] | None = None,
         journal: Journal | None = None,
         bandwidth: Bandwidth | None = None,
+        pixels: Pixels | None = None,
         environment: AppEnvironment | None = None,
     ) -> None:
         """Start with `opener`, which lists and opens sessions; an empty `request` shows the picker.
@@ -139,6 +141,7 @@ class DeckApp(App[int], Acting):
         self.stall_detector = KeyStallDetector()
         self.bandwidth = bandwidth or Bandwidth()
         """Counts what is written to the terminal, and limits the share of pictures."""
+        self.pixels = pixels or Pixels()
         self.stopped_s = -math.inf
         """Keys up to this time of the monotonic clock were typed before the last stop."""
         self._own_context = copy_context()

@@ -29,12 +29,12 @@ from tui.session.requests import OpenRequest
 from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.terminal.bandwidth import Bandwidth, default_limit
 from tui.terminal.driver import DeckDriver
+from tui.terminal.pixels import Pixels, are_wanted
 from tui.terminal.stray_output import StrayOutput
 from tui.themes import HIGH_CONTRAST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 LOOK_S = 0.5
 """How often to check that the terminal is still there."""
@@ -147,31 +147,11 @@ def _as_lines(texts: Sequence[str], first: int, severity: Severity) -> list[LogL
     return [LogLine("deck", first + at, now_s, severity, plain(text), source="deck") for at, text in enumerate(texts)]
 
 
-def run_screen(
-    profile: Path | None,
-    *,
-    hardware: str = "mock",
-    overrides: Sequence[str] = (),
-    domain: int | None = None,
-    lang: str | None = None,
-    attach: str | None = None,
-    bandwidth: int | None = None,
-    wall: bool = False,
-) -> int:
-    """Show the screen until the user leaves it; return the exit code of the program.
-
-    Starts `profile` if there is one, shows the session `attach` if that is given, and otherwise
-    opens the picker; `wall` begins with the wall. `bandwidth` is as in `run_live`.
-    """
-    request = OpenRequest(profile, attach, hardware, tuple(overrides), domain, wall=wall)
-    return run_live(request, lang, bandwidth)
-
-
-def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = None) -> int:
+def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = None, pixels: str | None = None) -> int:
     """Run the app on this terminal; return the exit code of the program.
 
     `bandwidth` limits pictures, in bytes a second, with 0 for no limit; the default depends on the
-    terminal.
+    terminal. `pixels` is by default as in the settings.
     """
     gc.set_threshold(GARBAGE_AFTER)
     # Before there are threads, most of which would get a heap of their own.
@@ -195,6 +175,7 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
             driver_class=DeckDriver,
             journal=terminal.note_fault,
             bandwidth=Bandwidth(limit),
+            pixels=Pixels(are_wanted(pixels or settings.pixels, limit)),
             environment=terminal,
         )
         run(app.run_async())

@@ -19,6 +19,7 @@ from text.nested import NestedTooDeeplyError, read_json
 from text.os_words import os_reason
 
 SEEN = "seen"
+PIXELS = ("auto", "on", "off")
 _TEXTS = {
     "lesson": (N_("lesson: expected the name of a profile, such as {example}"), '"05-tf2"'),
     "editor": (N_("editor: expected a command, such as {example}"), '"nano"'),
@@ -45,6 +46,8 @@ class Settings:
     """Types that are not recorded, comma-separated, as chosen the last time."""
     tour: str = ""
     """`SEEN` once the tour of the first start was shown."""
+    pixels: str = ""
+    """As `--pixels`, which comes first."""
 
 
 def settings_path() -> Path:
@@ -133,7 +136,7 @@ def _problem(raw: object, themes: Collection[str], actions: Callable[[], Collect
 
 
 def _values(name: str, themes: Collection[str]) -> Collection[str]:
-    return {"theme": themes, "language": LANGUAGES, "tour": (SEEN,), "left_out": HEAVY_TYPES}[name]
+    return {"theme": themes, "language": LANGUAGES, "tour": (SEEN,), "left_out": HEAVY_TYPES, "pixels": PIXELS}[name]
 
 
 def _keys_problem(value: object, actions: Collection[str]) -> str:

@@ -10,6 +10,9 @@ from textual.containers import Vertical
 from textual.pilot import Pilot
 from textual.widget import Widget
 
+from tui.terminal.bandwidth import Bandwidth
+from tui.terminal.pixels import Pixels
+
 Placed = tuple[Widget, tuple[int, int]]
 """A panel, and the columns and rows it gets."""
 
@@ -17,6 +20,7 @@ Placed = tuple[Widget, tuple[int, int]]
 class Stage(App[None]):
     """Columns of panels, each in a frame."""
 
+    pixels = Pixels()
     CSS: ClassVar[str] = """
     Screen { layout: horizontal; }
     Vertical { width: auto; }
@@ -46,6 +50,9 @@ class Stage(App[None]):
 
 class Bare(App[None]):
     """Nothing but this widget."""
+
+    pixels = Pixels()
+    bandwidth = Bandwidth()
 
     def __init__(self, widget: Widget) -> None:
         super().__init__()

@@ -40,6 +40,7 @@ from tui.panels.panel import Panel, is_published, newest, other_type, row_of, tr
 from tui.panels.sonar import Bounds, bounds_of, ink_of, remark
 from tui.widgets.canvas import Canvas, scale_bar
 from tui.widgets.drawing import Drawing, Ink, Line, Placeholder, beside, cells_of, fit
+from tui.widgets.pixel_canvas import PixelCanvas
 
 GAP = "  "
 
@@ -150,6 +151,7 @@ class RoomMap(Drawing):
         self.scene = Scene(Pose(0.0, 0.0, 0.0))
         self._seen: Extent | None = None
         """What the rays have reached while there is no room."""
+        self._in_pixels = PixelCanvas(self)
 
     @property
     def has_value(self) -> bool:
@@ -174,9 +176,17 @@ class RoomMap(Drawing):
         return [*self._field(view), *rows(self._entries(view), width, below)]
 
     def _field(self, view: Viewport) -> list[Line]:
+        """The floor, in pixels where there are some, else in braille."""
+        extent = self._extent(self.scene)
+        fine = self._in_pixels.lines(
+            view.columns, view.rows, lambda columns, rows: self._canvas(fitted(extent, columns, rows))
+        )
+        return self._canvas(view).lines() if fine is None else fine
+
+    def _canvas(self, view: Viewport) -> Canvas:
         canvas = Canvas(view.columns, view.rows)
         draw_scene(canvas, view, self.scene)
-        return canvas.lines()
+        return canvas
 
     def _entries(self, view: Viewport) -> list[LegendEntry]:
         return entries(self.scene, view, self.stale_words if self.stale else "")

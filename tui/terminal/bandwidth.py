@@ -16,6 +16,8 @@ from tui.clock import steady
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from tui.terminal.pixels import Pixels
+
 OVER_SSH = 40_000
 """Default limit in bytes a second if the terminal is connected through SSH."""
 SAVED_S = 0.25
@@ -77,9 +79,10 @@ class Bandwidth:
 
 
 class HasBandwidth(Protocol):
-    """An app that limits what is written to its terminal."""
+    """An app that knows its terminal, and limits what is written to it."""
 
     bandwidth: Bandwidth
+    pixels: Pixels
 
 
 class PicturePace:

@@ -14,6 +14,7 @@ import os
 import select
 import signal
 from codecs import getincrementaldecoder
+from functools import partial
 from typing import TYPE_CHECKING
 
 from textual import constants
@@ -25,6 +26,7 @@ from textual.geometry import Size
 from tui.terminal.alt_keys import AltKeyParser
 from tui.terminal.hang_up import end_when_gone, hung_up
 from tui.terminal.output import Terminal
+from tui.terminal.pixels import KITTY_QUESTION, QUESTIONS
 from tui.terminal.stop_scan import PASTE_END, StopScan
 
 if TYPE_CHECKING:
@@ -32,12 +34,14 @@ if TYPE_CHECKING:
     from textual.message import Message
 
     from tui.terminal.bandwidth import Bandwidth
+    from tui.terminal.pixels import Pixels
 
     class OnTerminal(App[int]):
         """An app that has a terminal. Its methods here are called on threads of the driver."""
 
         terminal_fd: int
         bandwidth: Bandwidth
+        pixels: Pixels
         stopped_s: float
         """Keys up to this time of the monotonic clock were typed before the last stop."""
 
@@ -73,7 +77,8 @@ class DeckDriver(LinuxDriver):
         super().__init__(app, **options)  # type: ignore[arg-type]
         self._deck = app
         fd = app.terminal_fd
-        self._terminal = Terminal(fd, lambda: app.call_later(app.refresh, layout=True), app.bandwidth)
+        repaint = partial(app.call_later, app.refresh, layout=True)
+        self._terminal = Terminal(fd, repaint, app.bandwidth, app.pixels.pictures)
         self._file = self._terminal  # type: ignore[assignment]
         self._signals: set[int] = set()
         """Those that wait for the event loop."""
@@ -124,7 +129,7 @@ class DeckDriver(LinuxDriver):
         if any(stops for _piece, stops in pieces):
             self._deck.stop_wheels()
         for piece, stops in pieces:
-            self._parse(self._decode(piece), stopped=stops)
+            self._parse(self._deck.pixels.sift(self._decode(piece)), stopped=stops)
         if self._parser.dropped and not self._has_told:
             self._has_told = True
             self._deck.tell_unread(self._parser.dropped)
@@ -146,6 +151,7 @@ class DeckDriver(LinuxDriver):
         if self._scan.pasting_s > PASTE_ENDS_S:
             self._scan.end_paste()
             self._parse(PASTE_END)
+        self._parse(self._deck.pixels.sift(""))
         for event in self._parser.tick():
             self.process_message(event)
 
@@ -206,8 +212,19 @@ class DeckDriver(LinuxDriver):
             # Also where on a US keyboard the key is; it goes with what Textual has asked for.
             self.write(f"\x1b[={KITTY_REPORT_ALTERNATE_KEYS};2u")
         asyncio.get_running_loop().add_signal_handler(signal.SIGWINCH, self._tell_size)
+        self._ask_for_pixels()
+
+    def _ask_for_pixels(self) -> None:
+        """Ask what pictures the terminal understands; it answers when it does, and nobody waits."""
+        pixels = self._deck.pixels
+        # The console of Linux would print a part of it.
+        if pixels.wanted and not self._terminal.leaving and os.environ.get("TERM") != "linux":
+            pixels.asked(self._terminal.cell())
+            self.write(KITTY_QUESTION)
+            self.write(QUESTIONS)
 
     def _tell_size(self) -> None:
+        self._ask_for_pixels()
         # A terminal that reports its size itself, in-band, does so only once.
         if not self._in_band_window_resize:
             size = Size(*self._get_terminal_size())

@@ -13,6 +13,7 @@ from rich.segment import Segment
 from textual.filter import LineFilter
 
 from text.plain import is_plain, plain
+from tui.terminal.pixels import PICTURE
 
 if TYPE_CHECKING:
     from textual.color import Color
@@ -30,6 +31,9 @@ class Harmless(LineFilter):
 
 
 def _harmless(segment: Segment) -> Segment:
+    if PICTURE.fullmatch(segment.text):
+        # No terminal gets it, see `terminal_diff`.
+        return segment
     text = plain(segment.text)
     if segment.control or text == segment.text:
         return segment

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import select
+import struct
+import termios
 import threading
 from collections import deque
 from typing import TYPE_CHECKING
@@ -12,7 +15,9 @@ from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.terminal_diff import TerminalDiff
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
+
+    from tui.terminal.pixels import PixelPicture
 
 MOST_WAITING = 1_000_000
 """Bytes that may wait for the terminal; with more it counts as stalled."""
@@ -27,11 +32,17 @@ class Terminal:
     again: then `on_caught_up` is called, on another thread, for a full repaint.
     """
 
-    def __init__(self, fd: int, on_caught_up: Callable[[], object], bandwidth: Bandwidth | None = None) -> None:
+    def __init__(
+        self,
+        fd: int,
+        on_caught_up: Callable[[], object],
+        bandwidth: Bandwidth | None = None,
+        pictures: Mapping[str, PixelPicture] | None = None,
+    ) -> None:
         """Write to `fd` on a separate thread, and report all output to `bandwidth`."""
         self._fd = fd
         self._bandwidth = bandwidth or Bandwidth()
-        self._diff = TerminalDiff()
+        self._diff = TerminalDiff(pictures)
         self._terminal_size = (0, 0)
         self._on_caught_up = on_caught_up
         self._lock = threading.Condition()
@@ -81,6 +92,14 @@ class Terminal:
         except OSError:
             return 80, 24
         return columns or 80, lines or 24
+
+    def cell(self) -> tuple[int, int]:
+        """Return width and height of a cell in pixels as the system knows them, else zeros."""
+        try:
+            rows, columns, width, height = struct.unpack("4H", fcntl.ioctl(self._fd, termios.TIOCGWINSZ, bytes(8)))
+        except OSError:
+            return 0, 0
+        return width // max(1, columns), height // max(1, rows)
 
     def flush(self) -> None:
         """Do nothing: output is already on its way."""

@@ -10,16 +10,23 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from rich.cells import cell_len
 
+from tui.terminal.pixels import PixelPicture
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 _TOKENS = re.compile(
-    r"\x1b\[(?P<place>[\d;]*)H|\x1b\[(?P<sgr>[\d;]*)m|(?P<text>[^\x00-\x1f\x7f]+)|(?P<line>\n)"
+    r"\x1b\[(?P<place>[\d;]*)H|\x1b\[(?P<sgr>[\d;]*)m|(?P<picture>[\U00100000-\U0010fffd]+)"
+    r"|(?P<text>[^\x00-\x1f\x7f\U00100000-\U0010fffd]+)|(?P<line>\n)"
     r"|(?P<other>\x1b\[[?>=<]?[\d;]*[ $]?[@-~]|\x1b[^\[]|.)",
     re.DOTALL,
 )
-_SYNC = re.compile(r"\x1b\[\?2026[hl]")
+_NO_CELLS = re.compile(r"\x1b\[\?2026[hl]|\x1b[]_][^\x07\x1b]*(?:\x07|\x1b\\)")
+"""What touches none: where a frame begins and ends, and strings, as for the clipboard."""
 _ODD = re.compile(r"\x1b\]|\x1b\[(?:[0-3]?[JK]|\d*[ABCDEFGSTLMPXd])")
 """Sequences after which the remembered cells may differ from those shown."""
 _PLAIN_RANGES = (
@@ -65,7 +72,15 @@ class Look(NamedTuple):
 class TerminalDiff:
     """Knows what the terminal shows; `changes` returns what has to be sent to update it."""
 
-    def __init__(self) -> None:
+    def __init__(self, pictures: Mapping[str, PixelPicture] | None = None) -> None:
+        """Draw `pictures` in pixels where all cells have their character."""
+        self._pictures = {} if pictures is None else pictures
+        self._claimed: dict[str, None] = {}
+        """Characters of pictures that this frame has put into cells."""
+        self._drawn: dict[str, PixelPicture] = {}
+        """Those that the terminal shows in pixels."""
+        self._places: dict[tuple[int, ...], tuple[int, int]] = {}
+        """Column and row where one of this shape was last seen whole: the next one is there, too."""
         self._width = self._height = 0
         self._rows: list[list[ScreenCell | None]] = []
         self._at: tuple[int, int] | None = None
@@ -82,7 +97,7 @@ class TerminalDiff:
 
     def changes(self, frame: str) -> str:
         """Return the shortest output that makes the terminal show `frame`."""
-        if _SYNC.fullmatch(frame):
+        if _NO_CELLS.fullmatch(frame):
             return frame
         if _ODD.search(frame):
             self.forget(self._width, self._height)
@@ -96,6 +111,8 @@ class TerminalDiff:
             moved = kind == "place"
             if kind == "text":
                 x = self._text(x, y, value, sgr)
+            elif kind == "picture":
+                x = self._claim(x, y, value)
             elif kind == "sgr":
                 sgr = _joined(sgr, token["sgr"])
             elif kind == "place":
@@ -104,6 +121,7 @@ class TerminalDiff:
                 x, y = 0, y + 1
             else:
                 self._other(value)
+        self._draw_pictures()
         if moved and self._out:
             self._go(x, y)
         return "".join(self._out)
@@ -113,6 +131,9 @@ class TerminalDiff:
         if self._sgr != "":
             self._out.append("\x1b[0m")
             self._sgr = ""
+        if "1049" in sequence:
+            self._out += [picture.erase for picture in self._drawn.values()]
+            self._drawn.clear()
         self._out.append(sequence)
         if "1049" in sequence or sequence == "\x1bc":
             self.forget(self._width, self._height)
@@ -136,6 +157,61 @@ class TerminalDiff:
         if first >= 0:
             self._send(first, y, text[first - x :], sgr)
         return x + len(text)
+
+    def _claim(self, x: int, y: int, text: str) -> int:
+        """Give cells to pictures, in whatever style: a dialog above them dims it."""
+        if 0 <= y < self._height:
+            row = self._rows[y]
+            for at, char in enumerate(text[: max(0, self._width - x)], x):
+                cell = ScreenCell(char, "")
+                if row[at] != cell:
+                    row[at] = cell
+                    self._claimed[char] = None
+        return x + len(text)
+
+    def _draw_pictures(self) -> None:
+        """Draw each picture whose cells have changed: in half-blocks if something covers a part of it.
+
+        The newest first, so that nothing shows through between two.
+        """
+        for char in {**self._claimed, **dict.fromkeys(self._drawn)}:
+            picture, cell = self._pictures.get(char) or self._drawn.get(char), ScreenCell(char, "")
+            rows = [y for y, row in enumerate(self._rows) if cell in row]
+            if picture is not None and self._is_whole(picture, cell, rows):
+                if char in self._claimed:
+                    self._go(*self._places[picture.halves.shape])
+                    self._out.append(picture.draw)
+                    self._at = self._sgr = None
+                    self._drawn[char] = picture
+                continue
+            was = self._drawn.pop(char, None)
+            if was is not None:
+                self._out.append(was.erase)
+            if picture is not None and (was is not None or char in self._claimed):
+                self._draw_halves(picture, cell, rows)
+        self._claimed.clear()
+
+    def _is_whole(self, picture: PixelPicture, cell: ScreenCell, rows: list[int]) -> bool:
+        """Whether it has all its cells, and may be drawn: in the last row, sixels would scroll the screen."""
+        high, wide = len(picture.halves) // 2, picture.halves.shape[1]
+        if len(rows) != high or rows[-1] - rows[0] + 1 != high or rows[-1] >= self._height - 1:
+            return False
+        left = self._rows[rows[0]].index(cell)
+        if any(self._rows[y][left : left + wide] != [cell] * wide for y in rows):
+            return False
+        self._places[picture.halves.shape] = left, rows[0]
+        return True
+
+    def _draw_halves(self, picture: PixelPicture, cell: ScreenCell, rows: list[int]) -> None:
+        # One that has never been whole begins where something of it is seen.
+        seen = min((self._rows[y].index(cell) for y in rows), default=0), min(rows, default=0)
+        left, top = self._places.get(picture.halves.shape, seen)
+        high, wide = len(picture.halves) // 2, picture.halves.shape[1]
+        for y in range(max(top, 0), min(top + high, self._height)):
+            for x in range(max(left, 0), min(left + wide, self._width)):
+                if self._rows[y][x] == cell:
+                    upper, lower = picture.halves[2 * (y - top) : 2 * (y - top) + 2, x - left].tolist()
+                    self._send(x, y, "▀", "38;2;{};{};{};48;2;{};{};{}".format(*upper, *lower))
 
     def _unsure(self, x: int, y: int, text: str, sgr: str) -> int:
         """Send text whose width is uncertain, and forget its cells."""

@@ -24,6 +24,7 @@ from tui.topics.plot_history import History, HistoryDots, Numbers, PlotField, Se
 from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import Drawing, Ink, Line, fit
 from tui.widgets.figures import UNKNOWN
+from tui.widgets.pixel_canvas import PixelCanvas
 
 WINDOWS_S = (10.0, 30.0, 60.0, 300.0)
 LOOKS = ("accent", "second", "good", "warn", "bad", "strong")
@@ -50,6 +51,7 @@ class TopicPlot(Drawing):
 
     def __init__(self) -> None:
         super().__init__()
+        self._in_pixels = PixelCanvas(self)
         self._series: list[Series] = []
         self._window_s = WINDOWS_S[1]
         self._now_s = 0.0
@@ -148,16 +150,21 @@ class TopicPlot(Drawing):
         # The window ends at a whole cell: the curves move by cells and keep their shape.
         cell_s = self._window_s / across
         edge_s = math.ceil(end_s / cell_s) * cell_s
-        canvas = Canvas(across, rows)
         ends: dict[int, Ink] = {}
-        for series in self._series:
-            columns = series.history.columns(edge_s, self._window_s, 2 * across)
-            canvas.mask(curve(columns, axis, rows), series.look)
-            self._letter(series, columns, axis, rows, ends)
-        for row in labels:
-            canvas.dotted(row, "muted")
+
+        def drawn(across: int, down: int) -> Canvas:
+            canvas = Canvas(across, down)
+            ends.clear()
+            for series in self._series:
+                columns = series.history.columns(edge_s, self._window_s, 2 * across)
+                canvas.mask(curve(columns, axis, down), series.look)
+                self._letter(series, columns, axis, rows, ends)
+            for row in labels:
+                canvas.dotted((2 * row + 1) * down // (2 * rows), "muted")
+            return canvas
+
         lines = []
-        for row, line in enumerate(canvas.lines()):
+        for row, line in enumerate(self._in_pixels.lines(across, rows, drawn) or drawn(across, rows).lines()):
             label = labels.get(row, "").rjust(left - 1) + ("┤" if row in labels else "│")
             lines.append([Ink(label, "muted"), *line, ends.get(row, Ink(" "))])
         return [*lines, self._times(left, across)]

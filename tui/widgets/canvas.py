@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from tui.widgets.drawing import LOOKS, Ink, Line
 Point = tuple[float, float]
 """x to the right and y downwards, in dots."""
 
+GRID = "·"
+SPOT = 4
+"""Half the size of any other sign where dots are pixels, in dots."""
 _LOOKS = ("", *LOOKS)
 _NUMBER = {look: number for number, look in enumerate(_LOOKS)}
 
@@ -45,7 +49,7 @@ class Canvas:
         """Put a dot into every fourth cell of a row, where nothing is drawn."""
         for column in range(0, self.columns, 4):
             if not self._on[4 * row : 4 * row + 4, 2 * column : 2 * column + 2].any():
-                self.sign((2.0 * column, 4.0 * row), "·", look)
+                self.sign((2.0 * column, 4.0 * row), GRID, look)
 
     def line(self, start: Point, end: Point, look: str = "", dash: tuple[int, int] = (1, 0)) -> None:
         """Draw a straight line; `dash` is how many dots are set and how many left out in turn."""
@@ -82,6 +86,18 @@ class Canvas:
             row, column = int(place[1]) // 4, int(place[0]) // 2
             self._signs[row, column] = char
             self._looks[row, column] = _NUMBER[look]
+
+    def rgb(self, colours: Mapping[str, tuple[int, int, int]], ground: tuple[int, int, int]) -> NDArray[np.uint8]:
+        """Return the canvas with a pixel for each dot; a sign is a spot of the size of some cells."""
+        on, looks = self._on.copy(), self._looks.repeat(4, axis=0).repeat(2, axis=1)
+        for (row, column), char in self._signs.items():
+            size = 1 if char == GRID else SPOT
+            y, x = 4 * row + 2, 2 * column + 1
+            spot = slice(max(0, y - size), y + size), slice(max(0, x - size), x + size)
+            on[spot], looks[spot] = True, self._looks[row, column]
+        palette = np.array([colours[look] for look in _LOOKS], np.uint8)
+        pixels: NDArray[np.uint8] = np.where(on[..., None], palette[looks], np.array(ground, np.uint8))
+        return pixels
 
     def lines(self) -> list[Line]:
         """Return the canvas as lines of ink; neighbours that look alike share one."""

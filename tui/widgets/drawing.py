@@ -173,10 +173,10 @@ class Drawing(OneStyle, Widget):
         width = self.size.width
         if self._fault or not self.draws:
             return self._words(y, width)
-        segments = [Segment(ink.text, self._style(ink.look)) for ink in _at(self._lines, y)]
-        return Strip(segments).adjust_cell_length(width, self._style(""))
+        segments = [Segment(ink.text, self.style_of(ink.look)) for ink in _at(self._lines, y)]
+        return Strip(segments).adjust_cell_length(width, self.style_of(""))
 
-    def _style(self, look: str) -> Style:
+    def style_of(self, look: str) -> Style:
         style = self._styles.get(look)
         if style is None:
             style = self.get_component_rich_style(f"drawing--{look}") if look else self.rich_style

@@ -28,7 +28,8 @@ from text.figures import figure
 from text.i18n import _, decimal
 from text.plain import plain
 from tui import clock
-from tui.terminal.bandwidth import Bandwidth, HasBandwidth, PicturePace
+from tui.terminal.bandwidth import HasBandwidth, PicturePace
+from tui.terminal.pixels import PixelPicture
 from tui.widgets.canvas import spans
 from tui.widgets.words import OneStyle, cut, in_row, word_strips
 
@@ -65,9 +66,9 @@ class ShownPicture(NamedTuple):
 
 
 class ImageView(OneStyle, Widget):
-    """Shows an RGB picture in half-blocks, or words where there is none.
+    """Shows an RGB picture, or words where there is none: in pixels where the terminal has them, else in half-blocks.
 
-    Only cells whose colour has changed visibly are redrawn. `bits` is the depth of a channel: fewer
+    Of half-blocks only cells whose colour has changed visibly are redrawn. `bits` is the depth of a channel: fewer
     bits mean fewer bytes to the terminal. A picture that replaces another one waits until the line
     to the terminal is free; of those that arrive in the meantime only the newest is shown.
     """
@@ -87,6 +88,10 @@ class ImageView(OneStyle, Widget):
         self._pace = PicturePace()
         self._shown: Pixels | None = None
         self.caption = ""
+        self._in_pixels: PixelPicture | None = None
+        """The same, if the terminal is to show its pixels."""
+        self._encoding = False
+        """Whether a picture is on its way into pixels."""
         self._scale: ImageScale | None = None
         self.words = ("", "")
         """Headline and detail shown in place of a picture, both empty if there is one."""
@@ -131,9 +136,11 @@ class ImageView(OneStyle, Widget):
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
         self._newest = ShownPicture(rgb, caption, scale, hz)
         self.words = ("", "")
+        if self._encoding:
+            return
         if self._waits:
             self._pace.left_out(clock.steady())
-        elif self._shown is None or not (wait_s := self._bandwidth.wait_s()):
+        elif self._shown is None or not (wait_s := self._host.bandwidth.wait_s()):
             self._take(self._newest)
         else:
             self._waits = True
@@ -146,7 +153,7 @@ class ImageView(OneStyle, Widget):
     def show_words(self, headline: str, detail: str = "") -> None:
         if self._newest is None and (headline, detail) == self.words:
             return
-        self._newest = self._shown = None
+        self._newest = self._shown = self._in_pixels = None
         self._waits = False
         self.words, self.caption = (headline, detail), ""
         self._scale = None
@@ -165,15 +172,15 @@ class ImageView(OneStyle, Widget):
     def wanted(self, width: int, height: int) -> tuple[int, int]:
         """Width and height at which a picture of this size should be decoded.
 
-        Twice as many pixels as are shown in each direction: a pixel on the screen is the mean of
-        four.
+        Twice as many half-blocks as are shown in each direction: each is the mean of four.
         """
         columns, rows = self.pixel_size[0], self.pixel_size[1] // 2
         if columns < 1 or rows < 1:
             # It is not on the screen yet, and there may never be another picture.
             columns, rows = UNPLACED
-        wide, high = fitting_size(width, height, columns, rows)
-        return 2 * wide, 2 * high
+        wide, high = self._fitting(width, height, columns, rows)
+        graphics = self._host.pixels.graphics
+        return (2 * wide, 2 * high) if graphics is None else (wide * graphics.cell[0], high // 2 * graphics.cell[1])
 
     def render_line(self, y: int) -> Strip:
         width, height = self.size
@@ -186,15 +193,18 @@ class ImageView(OneStyle, Widget):
         top, left = self._margins(self._shown, width, height)
         if not 0 <= y - top < self._shown.shape[0] // 2:
             return Strip.blank(width, self.rich_style)
-        strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
+        if self._in_pixels is None:
+            strip = Strip(row_segments(self._shown, y - top), self._shown.shape[1])
+        else:
+            strip = Strip([Segment(self._in_pixels.char * self._shown.shape[1], _style(None, 0))])
         return in_row(strip, left, width, self.rich_style)
 
     @property
-    def _bandwidth(self) -> Bandwidth:
-        return cast("HasBandwidth", self.app).bandwidth
+    def _host(self) -> HasBandwidth:
+        return cast("HasBandwidth", self.app)
 
     def _on_resize(self, _event: Resize) -> None:
-        self._shown = None
+        self._shown = self._in_pixels = None
         if self._newest is not None:
             self._take(self._newest)
 
@@ -207,7 +217,7 @@ class ImageView(OneStyle, Widget):
         """Draw the newest picture if it may be sent now."""
         if self._newest is None or not self._waits:
             return
-        if wait_s := self._bandwidth.wait_s():
+        if wait_s := self._host.bandwidth.wait_s():
             self._look_in(wait_s)
         else:
             self._take(self._newest)
@@ -217,11 +227,35 @@ class ImageView(OneStyle, Widget):
         self._waits = False
         self._pace.shown(now_s)
         self._set_scale(picture.scale)
-        self._draw(picture.rgb)
+        has_pixels = self._host.pixels.graphics is not None
+        if not has_pixels or self._in_pixels is None:
+            self._draw(picture.rgb)
+        if has_pixels and self._shown is not None and not self._encoding and min(self.pixel_size) > 0:
+            self._encoding = True
+            self.run_worker(self._encode(picture, self._halves(picture.rgb)), group="pixels")
         caption = picture.caption + self._rate_words(picture.hz, now_s)
         if caption != self.caption:
             self.caption = caption
             self.refresh(Region(0, self.size.height - 1, self.size.width, 1))
+
+    async def _encode(self, picture: ShownPicture, halves: Pixels) -> None:
+        """Draw a picture in pixels, made on another thread, and then the newest if there is another."""
+        try:
+            made = await self._host.pixels.made(picture.rgb, halves)
+        finally:
+            self._encoding = False
+        if self._newest is None or self._shown is None:
+            return
+        fits = self._shown.shape == halves.shape
+        if fits and made is not None:
+            top, left = self._margins(halves, *self.size)
+            self._shown, self._in_pixels = halves, made
+            self.refresh(Region(left, top, halves.shape[1], len(halves) // 2))
+        elif self._in_pixels is not None:
+            self._draw(picture.rgb)
+        if self._newest is not picture or not fits:
+            self._waits = True
+            self._look_again()
 
     def _rate_words(self, hz: str, now_s: float) -> str:
         shown = self._pace.limited_hz(now_s)
@@ -229,11 +263,11 @@ class ImageView(OneStyle, Widget):
             return ""
         if shown is None:
             return _(" · {hz} Hz").format(hz=hz)
-        if self._bandwidth.is_slow:
+        if self._host.bandwidth.is_slow:
             words = _(" · {shown} of {hz} Hz: the terminal is slow")
         else:
             words = _(" · {shown} of {hz} Hz: limited to {limit} kB/s")
-        limit = decimal(f"{self._bandwidth.limit / 1000:g}")
+        limit = decimal(f"{self._host.bandwidth.limit / 1000:g}")
         return words.format(shown=figure(shown, 1), hz=hz, limit=limit)
 
     def _draw(self, source: Pixels) -> None:
@@ -242,9 +276,9 @@ class ImageView(OneStyle, Widget):
         if width < 1 or rows < 1:
             return
         had = self._shown
-        shape = fitting_size(source.shape[1], source.shape[0], width, rows)
-        fresh = shrink(source, *shape)
-        if had is None or had.shape != fresh.shape:
+        fresh = self._halves(source)
+        if had is None or had.shape != fresh.shape or self._in_pixels is not None:
+            self._in_pixels = None
             self._shown = coarser(fresh, self._bits)
             self.refresh()
             return
@@ -254,10 +288,25 @@ class ImageView(OneStyle, Widget):
         if regions:
             self.refresh(*regions)
 
+    def _halves(self, source: Pixels) -> Pixels:
+        """The picture in the half-blocks of the cells that it takes."""
+        rows = self.size.height - self._caption_rows(self.size.height)
+        return shrink(source, *self._fitting(source.shape[1], source.shape[0], self.size.width, rows))
+
+    def _fitting(self, width: int, height: int, columns: int, rows: int) -> tuple[int, int]:
+        """As `fitting_size`, with cells as they are if they are known."""
+        graphics = self._host.pixels.graphics
+        if graphics is None:
+            return fitting_size(width, height, columns, rows)
+        (wide, high), largest = graphics.cell, graphics.largest
+        return fitting_size(
+            width, height, min(columns, largest[0] // wide), min(rows, largest[1] // high), high / wide
+        )
+
     def _set_scale(self, scale: ImageScale | None) -> None:
         if (scale is None) != (self._scale is None):
             # The picture gains or loses a row.
-            self._shown = None
+            self._shown = self._in_pixels = None
             self.refresh()
         elif scale and self._scale and scale[:2] != self._scale[:2]:
             self.refresh(Region(0, max(0, self.size.height - 2), self.size.width, 1))
@@ -307,14 +356,14 @@ MOST_COLOURS = 8192
 """Kept for the next picture: three megabytes, and two for the styles."""
 
 
-def fitting_size(width: int, height: int, columns: int, rows: int) -> tuple[int, int]:
-    """Width and height in pixels of the largest picture of this shape within the given cells.
+def fitting_size(width: int, height: int, columns: int, rows: int, tall: float = 2.0) -> tuple[int, int]:
+    """Width and height in half-blocks of the largest picture of this shape within the given cells.
 
     A cell is about twice as high as wide, so half of one is about square. The height is even.
     """
-    scale = min(columns / width, 2 * rows / height)
+    scale = min(columns / width, tall * rows / height)
     fit_width = min(columns, max(1, round(width * scale)))
-    fit_height = min(2 * rows, max(2, 2 * round(height * scale / 2)))
+    fit_height = min(2 * rows, max(2, 2 * round(height * scale / tall)))
     return fit_width, fit_height
 
 

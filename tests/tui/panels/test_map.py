@@ -10,7 +10,9 @@ from graph.data import GraphUpdate, Trouble
 from robot.motion.odometry import Pose
 from tests.tui.panel_stage import Bare, rows
 from tests.tui.recorded_map import NOBODY, map_update, odometry, stamped
+from tests.waiting import until
 from tui.panels.map import MapPanel, RoomMap
+from tui.terminal.pixels import PICTURE, Graphics, Pixels
 
 
 class Alone(Bare):
@@ -82,3 +84,14 @@ async def test_a_sonar_that_falls_silent_is_blind_and_one_that_is_gone_is_not_dr
         assert "? front no valid reading" in text
         assert text.count("?") == 2
         assert "front" not in app.tell(map_update({"/sensor/sonar_front": NOBODY}, sonar_front=()))
+
+
+async def test_where_the_terminal_has_pixels_the_floor_is_a_picture_of_its_cells() -> None:
+    app = Alone()
+    app.pixels = Pixels(graphics=Graphics("sixel", (10, 20)))
+    async with app.run_test(size=(100, 20)):
+        assert "⠒" in app.tell(map_update())
+        await until(lambda: PICTURE.search(app.text), "a picture in place of dots")
+        assert "path 2." in app.text
+        picture = app.pixels.pictures[PICTURE.findall(app.text)[0][0]]
+        assert sum(map(len, PICTURE.findall(app.text))) == picture.halves.shape[1] * len(picture.halves) // 2

@@ -16,6 +16,7 @@ from textual.widgets import Static
 from tui.terminal import hang_up
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
+from tui.terminal.pixels import Pixels
 
 
 class StuckApp(App[int]):
@@ -28,6 +29,7 @@ class StuckApp(App[int]):
         self._how = how
         self._file = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         self.bandwidth = Bandwidth()
+        self.pixels = Pixels()
         self.stopped_s = 0.0
 
     def compose(self):  # type: ignore[no-untyped-def]  # noqa: ANN201

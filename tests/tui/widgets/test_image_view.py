@@ -9,7 +9,9 @@ from textual.geometry import Region
 
 from tests.waiting import until
 from tui.terminal.bandwidth import Bandwidth
-from tui.widgets.image_view import ImageView, Pixels, fitting_size
+from tui.terminal.pixels import Pixels
+from tui.widgets.image_view import ImageView, fitting_size
+from tui.widgets.image_view import Pixels as Rgb
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 
@@ -20,6 +22,7 @@ class PictureApp(App[None]):
     def __init__(self, limit: int = 0) -> None:
         super().__init__()
         self.bandwidth = Bandwidth(limit)
+        self.pixels = Pixels()
 
     def compose(self) -> ComposeResult:
         yield ImageView()
@@ -29,7 +32,7 @@ class PictureApp(App[None]):
         return self.query_one(ImageView)
 
 
-def plain_picture(width: int, height: int, color: tuple[int, int, int]) -> Pixels:
+def plain_picture(width: int, height: int, color: tuple[int, int, int]) -> Rgb:
     return np.full((height, width, 3), color, np.uint8)
 
 
