@@ -35,6 +35,8 @@ MOST_BLOCK_DOTS = 12
 """How many dots wide a cube may appear; a larger one is cut to that."""
 SIGN_DOTS = 3
 """A text begins a cell to the right of its place, so that the place itself stays visible."""
+NEAR_COLUMNS = 6
+"""By how many cells it makes way for what is drawn there, such as the robot itself."""
 NEAR_ROWS = (0, 1, -1, 2, -2)
 """By how many rows a text may be away from its place, if another one is there."""
 
@@ -265,13 +267,21 @@ class _Canvas:
         if not (0 <= x < self._size[0] and 0 <= y < self._size[1] and shape.text):
             return
         row, column = int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS
-        for own in (row + away for away in NEAR_ROWS):
-            if 0 <= own < self._rows and not any(
-                own == other and column <= begin + len(sign.text) and begin <= column + len(shape.text)
+        for own in (row + away for away in NEAR_ROWS if 0 <= row + away < self._rows):
+            start = self._behind_the_drawn(own, column)
+            if not any(
+                own == other and start <= begin + len(sign.text) and begin <= start + len(shape.text)
                 for other, begin, sign in self._signs
             ):
-                self._signs.append((own, column, shape))
+                self._signs.append((own, start, shape))
                 return
+
+    def _behind_the_drawn(self, row: int, column: int) -> int:
+        """Return where a text begins that would hide what is drawn from this column on, if that ends close by."""
+        dots = self._on[DOTS_DOWN * row : DOTS_DOWN * (row + 1), DOTS_ACROSS * column :]
+        drawn = np.flatnonzero(dots.any(axis=0).reshape(-1, DOTS_ACROSS).any(axis=1)[: NEAR_COLUMNS + 1])
+        end = column + int(drawn[-1]) + 1 if drawn.size else column
+        return column if end > min(column + NEAR_COLUMNS, self._columns - 1) else end
 
     def cells(self) -> CellPicture:
         codes = characters(self._on)

@@ -32,7 +32,7 @@ class LayerRows(Rows):
     """Layers, below each what is wrong with it; a click on its mark shows or hides it."""
 
     DEFAULT_CSS = """
-    LayerRows { width: 29; padding-right: 1; border-left: solid $panel; }
+    LayerRows { width: 30%; min-width: 29; max-width: 48; padding-right: 1; border-left: solid $panel; }
     """
 
     def __init__(self) -> None:

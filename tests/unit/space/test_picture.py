@@ -74,6 +74,13 @@ def test_signs_do_not_overlap() -> None:
     assert [line.strip() for line in lines(12, 4, *shapes)] == ["", "base_link", "laser", ""]
 
 
+def test_a_sign_makes_way_for_what_is_drawn_at_its_place() -> None:
+    robot, wall = (Strokes(places((-20, 0.5, 0)), places((end, 0.5, 0))) for end in (-13, 30))
+    sign = Sign((-20.0, 0.5, 0.0), "base")
+    assert lines(20, 1, robot, sign) == ["⠒⠒⠒⠒base            "]
+    assert lines(20, 1, wall, sign)[0][1:5] == "base"
+
+
 def test_frames_in_one_place_share_a_line_for_their_names() -> None:
     frames = {name: Transform() for name in ("a", "b", "c")} | {"far": Transform((9.0, 0.0, 0.0))}
     assert [one.text for one in frame_shapes(frames, 40.0, ("b",)) if isinstance(one, Sign)] == ["b +2", "far"]
