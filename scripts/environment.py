@@ -220,8 +220,8 @@ class Environment:
         Step.ended, Step.total = 0, (not sound) + 2 + 2 * changed
         if not sound:
             self.begin()
-            Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
             self.distro.write_text(distro)
+            Step("Virtual environment", sys.executable, "-m", "venv", self.folder).finish()
         # A half-finished installation looks complete to the next pip. When pip fails it undoes its
         # work; when it is killed, or had nothing whole to go back to, this mark stays behind.
         self.unfinished.touch()
@@ -255,7 +255,8 @@ class Environment:
             return
         wheels = WORK / "wheels"
         shutil.rmtree(wheels, ignore_errors=True)
-        builder = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+        scripts = (Path(__file__), Path(__file__).with_name("distro.py"))
+        builder = hashlib.sha256(b"".join(script.read_bytes() for script in scripts)).hexdigest()
         kept = WheelCache(wanted, builder)
         if kept.fetch(wheels):
             self.install_deck()

@@ -11,6 +11,8 @@ from dataclasses import is_dataclass, replace
 from enum import Enum
 from typing import Any
 
+from tui.terminal.pixels import KITTY_QUESTION
+
 CLIPBOARD = "\x1b]52;c;ZXZpbA==\x07"
 CONTROLS = f"{CLIPBOARD}\x1bc\x1b[2J\x1b[45mX\x9b45m\x90q\x9d0;title\x9c\x7f\x08\r\n\t"
 HIDDEN = "\u202eabc\u202c\u2066\u2069\u200e\u200b\u2060\ufeffa\u200db\u200cc\ufe0f\u3164\u00ad"
@@ -57,8 +59,8 @@ def _harms(one: str, *, lines: bool) -> bool:
     return unicodedata.category(one) in {"Cc", "Cf", "Cs", "Co", "Zl", "Zp"} or one in "\ufe0f\u3164"
 
 
-_SEQUENCE = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b[>=78]|\x1b\]22;\w*\x07")
-"""What Textual sends: colours, places, modes, the shape of the pointer."""
+_SEQUENCE = re.compile(rf"\x1b\[[0-?]*[ -/]*[@-~]|\x1b[>=78]|\x1b\]22;\w*\x07|{re.escape(KITTY_QUESTION)}")
+"""What Textual sends: colours, places, modes, the shape of the pointer; and whether there are pictures."""
 _COPY = re.compile(r"\x1b\]52;c;([A-Za-z0-9+/=]*)\x07")
 _OURS = ("\x1b[45m", "\x1b[2J", CLIPBOARD, "\x1bc", "\x1b]8;")
 """Those of the hostile texts, and a link, that Textual never sends."""

@@ -166,5 +166,8 @@ def remove_tree(root: Path) -> None:
     `shutil.rmtree` calls itself for each folder, and gives up at those that may not be read.
     """
     closed = ("-type", "d", "!", "-perm", "-700", "-execdir", "chmod", "700", "{}", ";")
+    # With the current folder on the search path `find` would refuse.
+    environ = {**os.environ, "PATH": os.defpath}
     for command in (("find", str(root), *closed), ("rm", "-rf", "--", str(root))):
-        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        with suppress(OSError):
+            subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environ, check=False)

@@ -181,9 +181,9 @@ class Node(Part):
     """Absolute; by default the folder in which the launcher was started."""
 
     def __post_init__(self) -> None:
-        """Fill in the roles that a module says of itself."""
-        if not self.roles:
-            object.__setattr__(self, "roles", robot().roles.get(self.run or "", ()))
+        """Add the roles that a module says of itself: a profile takes none away, such as that it drives."""
+        announced = robot().roles.get(self.run or "", ())
+        object.__setattr__(self, "roles", tuple(dict.fromkeys((*announced, *self.roles))))
 
     @property
     def command(self) -> str:

@@ -42,6 +42,8 @@ _INTERFACES = (
     "example_interfaces.srv",
 )
 
+_STANDARD = f"{os.path.dirname(os.__file__)}/"  # noqa: PTH120
+"""Where Python's own modules are."""
 IDLE_AFTER_S = 0.3
 """Longer than the pauses during a start, when the CPU is needed by others."""
 
@@ -124,7 +126,9 @@ class Preload:
 def _stamp(name: str) -> tuple[float, int] | None:
     """Return what differs once a module of Deck has been written; None for others, and if it is gone."""
     file = str(getattr(sys.modules.get(name), "__file__", ""))
-    if file.startswith(f"{INSTALLATION}/") and "/site-packages/" not in file.removeprefix(INSTALLATION):
+    # An environment may lie within Deck's checkout.
+    others = name == "__main__" or file.startswith(_STANDARD) or "/site-packages/" in file.removeprefix(INSTALLATION)
+    if file.startswith(f"{INSTALLATION}/") and not others:
         with contextlib.suppress(OSError):
             status = os.stat(file)  # noqa: PTH116
             return status.st_mtime, status.st_size

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import json
 import os
 import signal
 import socket
+import time
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -19,6 +21,7 @@ from text.os_words import os_reason
 from text.sentences import Words, say
 
 MAX_ATTEMPTS = 3
+ROOM_EVERY_S = 0.01
 """Attempts for one request, each with a new spawn server if the last one died, or did not answer."""
 MAX_QUICK_DEATHS = 3
 """After this many spawn servers without a single answer, the next one is cold (no imports)."""
@@ -143,7 +146,7 @@ class Spawner:
         future: asyncio.Future[SpawnedProcess | None] = asyncio.get_running_loop().create_future()
         self._pending[request_id] = future
         try:
-            server.tell({"id": request_id, **vars(request)}, fds)
+            await self._say(server, {"id": request_id, **vars(request)}, fds)
             await asyncio.wait([future], timeout=self._answer_within_s)
             if not future.done():
                 server.kill(hung=True)
@@ -159,6 +162,17 @@ class Spawner:
         if not future.done():
             raise SpawnError(say("the spawn server does not answer"))
         return future.result()
+
+    async def _say(self, server: _Server, message: dict[str, object], fds: Sequence[int]) -> None:
+        """Send it once there is room: a server that imports something reads nothing meanwhile."""
+        until_s = time.monotonic() + self._answer_within_s
+        while True:
+            try:
+                return server.tell(message, fds)
+            except OSError as problem:
+                if problem.errno not in (errno.EAGAIN, errno.ETOOMANYREFS) or time.monotonic() > until_s:
+                    raise
+            await asyncio.sleep(ROOM_EVERY_S)
 
     def go_cold(self) -> None:
         """Replace the server with one that imports nothing: no node of this run needs them."""

@@ -53,7 +53,7 @@ def _name(text: str) -> str:
     arg("--dependencies", nargs="+", default=[], help="list of dependencies"),
     arg("--maintainer-email", help="email address of the maintainer"),
     arg("--maintainer-name", help="name of the maintainer"),
-    arg("--node-name", type=_name, default="", help="name of the empty executable"),
+    arg("--node-name", type=_name, help="name of the empty executable"),
 )  # fmt: skip
 def create(args: Namespace) -> str | None:
     """Write the files, and print each of them."""
@@ -81,7 +81,7 @@ def create(args: Namespace) -> str | None:
 
 def _files(args: Namespace) -> Iterator[tuple[str, str]]:
     """Yield path and content of each file, as colcon and ament want them."""
-    name, node = args.package_name, args.node_name
+    name, node = args.package_name, args.node_name or ""
     depends = "".join(f"  <depend>{escape(each)}</depend>\n" for each in dict.fromkeys(args.dependencies))
     yield (
         "package.xml",

@@ -23,7 +23,7 @@ def _domain(ros_domain: int) -> int:
 def handed_out(folder: Path, page: str) -> Path:
     """Write the two files that the page shows, in the folders that it shows."""
     text = (DOCS / page).read_text()
-    (profile,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    *_shortest, profile = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
     (node,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     profiles = folder / "profiles"
     profiles.mkdir()

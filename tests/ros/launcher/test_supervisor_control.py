@@ -17,6 +17,7 @@ from launcher.rundir import run_dir
 from launcher.status import NodeState
 from launcher.wire import VERSION
 from tests.ros.supervised import SLEEPER, Launch, running_pid, until_state
+from tests.slowness import patient
 from tests.waiting import until
 
 if TYPE_CHECKING:
@@ -103,6 +104,23 @@ async def test_a_client_of_another_version_is_told_so(start: Launch) -> None:
     assert await old.hear() == {}
     await running_pid(client, "node")
     old.writer.close()
+
+
+async def test_the_owner_attaches_past_100_connections_that_say_nothing(start: Launch) -> None:
+    client = await start(NODE)
+    folder = run_dir() / client.session.run_id
+    half_open = []
+    try:
+        for _connection in range(100):
+            half_open.append(await asyncio.to_thread(connect, folder))
+            half_open[-1].send(b'{"deck": ')
+        other = await asyncio.wait_for(attach(), patient(20))
+        await other.restart("node")
+        await other.aclose()
+        await running_pid(client, "node")
+    finally:
+        for connection in half_open:
+            connection.close()
 
 
 async def test_every_client_sees_what_another_does(start: Launch) -> None:

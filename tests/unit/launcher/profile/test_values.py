@@ -293,14 +293,14 @@ def test_an_unknown_hardware_is_refused(tmp_path: Path) -> None:
     assert told(tmp_path, TWO_WORLDS, hardware="moc") == ["--hardware: expected mock or real, found 'moc'"]
 
 
-def test_a_node_has_the_roles_of_its_module_or_those_that_the_profile_says(tmp_path: Path) -> None:
-    written(tmp_path, "nodes: {wheels: {run: nodes.chassis}, own: {run: nodes.hello}}", "deck.yaml")
+def test_a_node_has_the_roles_of_its_module_and_those_that_the_profile_says(tmp_path: Path) -> None:
+    written(tmp_path, "nodes: {wheels: {run: nodes.chassis, roles: [brain]}, own: {run: nodes.hello}}", "deck.yaml")
     (tmp_path / "own.py").touch()
     profile = loaded(
         tmp_path, "extends: ./deck.yaml\nnodes: {own: {run: ./own.py, roles: [gate]}, plain: {run: ./own.py}}"
     )
     assert {name: node.roles for name, node in profile.nodes.items()} == {
-        "wheels": ("drives", "driver"),
+        "wheels": ("drives", "driver", "brain"),
         "own": ("gate",),
         "plain": (),
     }
