@@ -268,7 +268,7 @@ class _Canvas:
             return
         row, column = int(y) // DOTS_DOWN, int(x) // DOTS_ACROSS
         for own in (row + away for away in NEAR_ROWS if 0 <= row + away < self._rows):
-            start = self._behind_the_drawn(own, column)
+            start = self._behind_the_drawn(own, column, len(shape.text))
             if not any(
                 own == other and start <= begin + len(sign.text) and begin <= start + len(shape.text)
                 for other, begin, sign in self._signs
@@ -276,12 +276,12 @@ class _Canvas:
                 self._signs.append((own, start, shape))
                 return
 
-    def _behind_the_drawn(self, row: int, column: int) -> int:
-        """Return where a text begins that would hide what is drawn from this column on, if that ends close by."""
+    def _behind_the_drawn(self, row: int, column: int, length: int) -> int:
+        """Return where a text has room that would hide what is drawn from this column on, if that ends close by."""
         dots = self._on[DOTS_DOWN * row : DOTS_DOWN * (row + 1), DOTS_ACROSS * column :]
         drawn = np.flatnonzero(dots.any(axis=0).reshape(-1, DOTS_ACROSS).any(axis=1)[: NEAR_COLUMNS + 1])
         end = column + int(drawn[-1]) + 1 if drawn.size else column
-        return column if end > min(column + NEAR_COLUMNS, self._columns - 1) else end
+        return column if end > min(column + NEAR_COLUMNS, self._columns - length) else end
 
     def cells(self) -> CellPicture:
         codes = characters(self._on)
