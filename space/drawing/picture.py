@@ -278,9 +278,9 @@ class _Canvas:
 
     def _behind_the_drawn(self, row: int, column: int, length: int) -> int:
         """Return where a text has room that would hide what is drawn from this column on, if that ends close by."""
-        dots = self._on[DOTS_DOWN * row : DOTS_DOWN * (row + 1), DOTS_ACROSS * column :]
-        drawn = np.flatnonzero(dots.any(axis=0).reshape(-1, DOTS_ACROSS).any(axis=1)[: NEAR_COLUMNS + 1])
-        end = column + int(drawn[-1]) + 1 if drawn.size else column
+        begin, near = DOTS_ACROSS * column, DOTS_ACROSS * (column + NEAR_COLUMNS + 1)
+        _rows, drawn = np.nonzero(self._on[DOTS_DOWN * row : DOTS_DOWN * (row + 1), begin:near])
+        end = column + int(drawn.max()) // DOTS_ACROSS + 1 if drawn.size else column
         return column if end > min(column + NEAR_COLUMNS, self._columns - length) else end
 
     def cells(self) -> CellPicture:
