@@ -5,13 +5,15 @@ What is damaged is read as far as it goes, an SQLite file not at all; `graph.bag
 
 from __future__ import annotations
 
+import heapq
 import sys
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, suppress
+from operator import itemgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple, TypeAlias
 from urllib.parse import quote
 
 from graph.bag import files
@@ -26,7 +28,7 @@ else:
 
 if TYPE_CHECKING:
     from mcap.records import Channel as ChannelRecord
-    from mcap.records import Message, Schema
+    from mcap.records import McapRecord, Schema
     from mcap.summary import Summary
     from rosbags.interfaces import Connection
 
@@ -36,6 +38,8 @@ Found: TypeAlias = "tuple[int, int, bytes]"
 ROS2_SCHEMAS = {"ros2msg": False, "ros2idl": True, "omgidl": True, "": False}
 """Encoding of a schema that ROS 2 writes, to whether it is IDL."""
 STEP_BYTES = 65_536
+NOBODY = -1
+"""No channel has this number."""
 
 
 class Channel(NamedTuple):
@@ -49,6 +53,16 @@ class Channel(NamedTuple):
     """How its messages are written. Only ROS 2's own, CDR, can be decoded and published."""
     offer: files.Offer = files.Offer()
     """QoS offered by its first publisher."""
+
+
+class Stretch(NamedTuple):
+    """Some whole records of an MCAP file that follow each other."""
+
+    begin: int
+    end: int
+    first_ns: int
+    last_ns: int
+    channels: frozenset[int]
 
 
 def opened(file: Path) -> BagPart:
@@ -171,7 +185,7 @@ def _channel_of_table(connection: Connection) -> Channel:
 
 
 class McapPart:
-    """An open MCAP file: read by its summary if it has one of all its chunks, else from its beginning each time."""
+    """An open MCAP file: read by its summary if that is complete, else by what a look at all of it shows."""
 
     stack: ExitStack
 
@@ -192,7 +206,9 @@ class McapPart:
         facts = summary.statistics if summary else None
         self.said = facts.message_count if facts else None
         """How many messages it holds by its own count, None if it keeps none."""
-        self._is_indexed = bool(summary and facts and 0 < facts.chunk_count == len(summary.chunk_indexes))
+        self._stretches: list[Stretch] = []
+        """What holds its messages, if the summary does not tell."""
+        self._is_indexed = summary is not None and _is_complete(summary)
         if summary and facts and self._is_indexed:
             schemas, channels, counts = summary.schemas, summary.channels, facts.channel_message_counts
             self.start_ns, self.end_ns = facts.message_start_time, facts.message_end_time
@@ -209,22 +225,26 @@ class McapPart:
         wanted, begin_ns = frozenset(numbers), start_ns or 0
         last_ns = max(begin_ns, self.start_ns)
         try:
-            for message in self._indexed(begin_ns, wanted) if self._is_indexed else self._streamed():
-                if message.channel_id in wanted and message.log_time >= begin_ns:
-                    last_ns = message.log_time
-                    yield last_ns, message.channel_id, message.data
+            for stamp_ns, number, raw in (self._indexed if self._is_indexed else self._streamed)(begin_ns, wanted):
+                if number in wanted and stamp_ns >= begin_ns:
+                    last_ns = stamp_ns
+                    yield stamp_ns, number, raw
         except Exception:  # noqa: BLE001 - the disk, a decompressor, or the content
             self.broken_ns = last_ns
 
-    def _indexed(self, begin_ns: int, wanted: Collection[int]) -> Iterator[Message]:
+    def _indexed(self, begin_ns: int, wanted: Collection[int]) -> Iterator[Found]:
         topics = {channel.topic for channel in self.channels if channel.number in wanted}
-        return (message for _schema, _channel, message in self._reader.iter_messages(topics, starting_at=begin_ns))
+        for _schema, _channel, message in self._reader.iter_messages(topics, starting_at=begin_ns):
+            yield message.log_time, message.channel_id, message.data
 
-    def _streamed(self) -> Iterator[Message]:
-        from mcap.records import Message
-
+    def _streamed(self, begin_ns: int, wanted: Collection[int]) -> Iterator[Found]:
         with self._content.open("rb") as stream:
-            yield from (record for record in _records(stream) if isinstance(record, Message))
+            stretches = [
+                _of(each, stream)
+                for each in self._stretches
+                if each.last_ns >= begin_ns and not each.channels.isdisjoint(wanted)
+            ]
+            yield from heapq.merge(*stretches, key=itemgetter(0))
 
     def _scan(self) -> tuple[dict[int, Schema], dict[int, ChannelRecord], Counter[int]]:
         """Read all of it; return its schemas and channels by their numbers, and how many messages each has."""
@@ -232,29 +252,70 @@ class McapPart:
 
         schemas: dict[int, Schema] = {}
         channels: dict[int, ChannelRecord] = {}
-        counts, at = Counter[int](), 0
-        self.start_ns = self.end_ns = 0
+        counts = Counter[int]()
+        begin = at = 0
+        found: list[tuple[int, int]] = []
         with self._content.open("rb") as stream:
             try:
-                for record in _records(stream):
+                for records in _records(stream):
                     at = stream.tell()
-                    if isinstance(record, Message):
-                        counts[record.channel_id] += 1
-                        self.start_ns = min(self.start_ns or record.log_time, record.log_time)
-                        self.end_ns = max(self.end_ns, record.log_time)
-                    elif isinstance(record, Channel):
-                        channels[record.id] = record
-                    elif isinstance(record, Schema):
-                        schemas[record.id] = record
+                    for record in records:
+                        if isinstance(record, Message):
+                            counts[record.channel_id] += 1
+                            found.append((record.log_time, record.channel_id))
+                        elif isinstance(record, Channel):
+                            channels[record.id] = record
+                        elif isinstance(record, Schema):
+                            schemas[record.id] = record
+                    if found and at - begin >= STEP_BYTES:
+                        self._stretches.append(_stretch(begin, at, found))
+                        begin, found = at, []
             except Exception:  # noqa: BLE001 - as in `messages`
                 self.cut_bytes = self._content.stat().st_size - at
+        if found:
+            self._stretches.append(_stretch(begin, at, found))
+        self.start_ns = min((stretch.first_ns for stretch in self._stretches), default=0)
+        self.end_ns = max((stretch.last_ns for stretch in self._stretches), default=0)
         return schemas, channels, counts
 
 
-def _records(stream: BinaryIO) -> Iterator[Any]:
-    from mcap.stream_reader import StreamReader
+def _is_complete(summary: Summary) -> bool:
+    """Return whether it tells of every chunk, channel and schema: a writer may leave out any of them."""
+    facts, channels = summary.statistics, summary.channels
+    if facts is None or not 0 < facts.chunk_count == len(summary.chunk_indexes):
+        return False
+    counts = facts.channel_message_counts
+    schemas = {channel.schema_id for channel in channels.values()} - {0}
+    is_counted = counts.keys() <= channels.keys() and sum(counts.values()) == facts.message_count
+    return is_counted and schemas <= summary.schemas.keys()
 
-    return StreamReader(stream, validate_crcs=True).records
+
+def _records(stream: BinaryIO, *, inside: bool = False) -> Iterator[list[McapRecord]]:
+    """Yield the records from here to the end, those of a chunk together; `inside`: this is not the beginning."""
+    from mcap.records import Chunk
+    from mcap.stream_reader import StreamReader, breakup_chunk
+
+    for record in StreamReader(stream, skip_magic=inside, emit_chunks=True, validate_crcs=True).records:
+        yield breakup_chunk(record, validate_crc=True) if isinstance(record, Chunk) else [record]
+
+
+def _stretch(begin: int, end: int, found: Sequence[tuple[int, int]]) -> Stretch:
+    stamps = [stamp_ns for stamp_ns, _number in found]
+    return Stretch(begin, end, min(stamps), max(stamps), frozenset(number for _stamp_ns, number in found))
+
+
+def _of(stretch: Stretch, stream: BinaryIO) -> Iterator[Found]:
+    from mcap.records import Message
+
+    # The merge takes one from each before it begins; not all should be read by then.
+    yield stretch.first_ns, NOBODY, b""
+    stream.seek(stretch.begin)
+    found: list[Found] = []
+    records = _records(stream, inside=stretch.begin > 0)
+    while stream.tell() < stretch.end:
+        messages = (record for record in next(records) if isinstance(record, Message))
+        found += ((message.log_time, message.channel_id, message.data) for message in messages)
+    yield from sorted(found, key=itemgetter(0))
 
 
 BagPart: TypeAlias = "McapPart | SqlitePart"

@@ -43,15 +43,23 @@ def write_mcap(
     compression: CompressionType = CompressionType.ZSTD,
     chunk_bytes: int = 2**20,
     topic: str = TOPIC,
+    backwards: bool = False,
+    summary: Mapping[str, bool] | None = None,
 ) -> Path:
     """A file with `count` texts on /chatter, and as many of a foreign channel if there is one.
 
-    `foreign`: message encoding, name of the schema, and its encoding.
+    `foreign`: message encoding, name of the schema, and its encoding; `backwards`: the last message stands first;
+    `summary`: what of it the writer leaves out, such as `repeat_channels`.
     """
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("wb") as stream:
         writer = Writer(
-            stream, chunk_size=chunk_bytes, use_statistics=statistics, index_types=indexes, compression=compression
+            stream,
+            chunk_size=chunk_bytes,
+            use_statistics=statistics,
+            index_types=indexes,
+            compression=compression,
+            **(summary or {}),
         )
         writer.start("ros2", "a test")
         schema = writer.register_schema(TEXT, "ros2msg", DEFINITION)
@@ -62,7 +70,7 @@ def write_mcap(
             encoding, name, of_schema = foreign
             kind = writer.register_schema(name, of_schema, b"{}")
             other = writer.register_channel("/extra", encoding, kind)
-        for number, at_ns in enumerate(times(first, count), first):
+        for number, at_ns in sorted(enumerate(times(first, count), first), reverse=backwards):
             writer.add_message(texts, at_ns, text_in_cdr(f"m{number}"), at_ns)
             if other is not None:
                 writer.add_message(other, at_ns, b'{"a": 1}', at_ns)

@@ -15,7 +15,7 @@ from graph.bag.reading import Bag, open_bag
 from graph.data import Interest
 from graph.replay.player import ReplayTopics
 from tests.unit.bags import write_bag
-from tests.unit.odd_bags import TOPIC, damage_chunk, write_mcap, write_metadata, write_sqlite
+from tests.unit.odd_bags import TEXT, TOPIC, damage_chunk, times, write_mcap, write_metadata, write_sqlite
 from text.i18n import localized
 
 
@@ -276,6 +276,38 @@ def test_what_a_damaged_chunk_and_the_rest_held_is_counted_with_an_index_or_with
             assert f"counts 30 messages of its own, and holds {len(found)}" in told
         else:
             assert f"of 30 messages only {len(found)} could be read" in told
+
+
+@pytest.mark.parametrize("left_out", ["repeat_channels", "repeat_schemas"])
+def test_a_whole_file_whose_summary_leaves_something_out_is_read(tmp_path: Path, left_out: str) -> None:
+    file = write_mcap(tmp_path / "walk.mcap", summary={left_out: False})
+    assert all_of(file, 20) == ()
+    with open_bag(file) as bag:
+        assert [topic.kind.name for topic in bag.topics] == [TEXT]
+
+
+@pytest.mark.parametrize("chunk_bytes", [400, 2**20])
+def test_what_is_left_of_a_file_is_read_in_the_order_of_time_and_from_any_time(
+    tmp_path: Path, chunk_bytes: int
+) -> None:
+    file = tmp_path / "walk.mcap"
+    write_mcap(file, 5000, chunk_bytes=chunk_bytes, compression=CompressionType.NONE, backwards=True)
+    file.write_bytes(file.read_bytes()[:-8])
+    with open_bag(file) as bag:
+        assert read(bag) == words_up_to(5000)
+        stamps = [stamp for _topic, stamp, _raw in bag.messages(times(2000, 1)[0])]
+        assert stamps == times(2000, 3000)
+
+
+def test_of_what_is_left_of_a_file_no_more_is_read_than_is_wanted(tmp_path: Path, long_bag: bytes) -> None:
+    file = write_bag(tmp_path / "walk") / "walk.mcap"
+    file.write_bytes(long_bag[:-8])
+    with open_bag(file) as bag:
+        third = len(long_bag) // 3
+        file.write_bytes(long_bag[:third] + bytes(third) + long_bag[2 * third : -8])
+        assert len(list(bag.messages(bag.end_ns - 10**9))) == 21
+        assert len(list(bag.messages(names=["/map_name"]))) == 1
+        assert bag.damage is None
 
 
 def test_a_name_without_its_slash_is_resolved_as_ros_does_and_kept_as_it_is_recorded(tmp_path: Path) -> None:
