@@ -54,9 +54,10 @@ class NoAnswerError(RuntimeError):
 class Guest:
     """A node in the graph, with what drives it."""
 
-    def __init__(self, node: Node, executor: SingleThreadedExecutor, answered_within_s: float) -> None:
+    def __init__(self, node: Node, executor: SingleThreadedExecutor, timeout_s: float | None) -> None:
+        """`timeout_s`: how long answers may take, if that was told."""
         self.node = node
-        self._answered_within_s = answered_within_s
+        self._timeout_s = timeout_s
         self._executor = executor
         self._since_s = time.monotonic()
 
@@ -75,7 +76,7 @@ class Guest:
         Raises NoAnswerError if it has not come by then, or `is_there` has said no for a while; RuntimeError for what
         was raised in its place.
         """
-        within_s = self._answered_within_s if within_s is None else within_s
+        within_s = within_s or self._timeout_s or ANSWERED_WITHIN_S
         begun = there_at = time.monotonic()
         while not future.done():
             self.spin_once()
@@ -111,7 +112,8 @@ class Guest:
             while True:
                 kind = load_service(services.types[asked.service])
                 request = to_message(kind.Request, asked.value)
-                answer = self.call(f"{node}/{asked.service}", kind, node, request, asked.within_s)
+                within_s = self._timeout_s or asked.within_s
+                answer = self.call(f"{node}/{asked.service}", kind, node, request, within_s)
                 asked = exchange.send(to_tree(answer))
 
     def find(self, name: str, service: str) -> str:
@@ -181,7 +183,7 @@ def joined(args: argparse.Namespace, *, settled: bool = False) -> Iterator[Guest
         raise RuntimeError(str(error)) from error
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
-    me = Guest(node, executor, getattr(args, "timeout", None) or ANSWERED_WITHIN_S)
+    me = Guest(node, executor, getattr(args, "timeout", None))
     try:
         if settled:
             me.settle()

@@ -86,8 +86,8 @@ ANSWERED_WITHIN_S = 5.0
 """So long may a node that is there take to answer, unless told otherwise."""
 OF_GRAPH: Final = flag("--no-daemon", help="There is none here: each command looks at the graph anew")
 ANSWERS: Final = arg(
-    "--timeout", type=positive_float, default=ANSWERED_WITHIN_S, metavar="SECONDS",
-    help="Seconds to wait for the answer of a node (default: %(default)g)",
+    "--timeout", type=positive_float, metavar="SECONDS",
+    help=f"Seconds to wait for the answer of a node (default: {ANSWERED_WITHIN_S:g})",
 )  # fmt: skip
 """For how long a verb waits for the answer of a node; the real tool waits for ever."""
 TYPES: Final = flag("-t", "--show-types", help="Additionally show the types")

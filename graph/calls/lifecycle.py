@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
     from graph.calls.exchanges import Exchange, Exchanges
-    from graph.data import NodeRow, ServiceRow
+    from graph.data import NodeRow, ServiceRow, Value
 
 
 CHANGE_WITHIN_S = 20.0
@@ -59,6 +59,8 @@ class LifecycleFacts:
 class ChangeFacts:
     """What came of a transition."""
 
+    transition: str
+    """The name of it, or the number until the node has told which that is."""
     before: LifecycleFacts = field(default_factory=LifecycleFacts)
     after: LifecycleFacts = field(default_factory=LifecycleFacts)
     success: bool | None = None
@@ -73,24 +75,27 @@ def read(facts: LifecycleFacts) -> Exchange:
     facts.transitions = dict(_outer(answer))
 
 
-def change(transition: str, facts: ChangeFacts) -> Exchange:
-    """Ask for a transition by its name, if it is possible now; what comes of it is in `facts`."""
+def change(facts: ChangeFacts) -> Exchange:
+    """Ask for the transition if it is possible now; what comes of it is in `facts`."""
     yield from read(facts.before)
-    number = facts.before.transitions.get(transition)
+    names = {str(number): name for name, number in facts.before.transitions.items()}
+    facts.transition = names.get(facts.transition, facts.transition)
+    number = facts.before.transitions.get(facts.transition)
     if number is None:
         facts.after = facts.before
         return
-    answer = yield NodeRequest("change_state", {"transition": {"id": number, "label": transition}}, CHANGE_WITHIN_S)
+    wanted: Value = {"id": number, "label": facts.transition}
+    answer = yield NodeRequest("change_state", {"transition": wanted}, CHANGE_WITHIN_S)
     facts.success = bool(answer["success"])
     yield from read(facts.after)
 
 
-def why_not(node: str, transition: str, facts: ChangeFacts, *, erred: bool) -> str:
+def why_not(node: str, facts: ChangeFacts, *, erred: bool) -> str:
     """Say why a transition was not done, empty if it was.
 
     `erred`: the node was seen to process an error meanwhile, which its answer does not tell.
     """
-    before, after = facts.before, facts.after
+    before, after, transition = facts.before, facts.after, facts.transition
     if facts.success:
         return ""
     words = {"node": node, "transition": transition, "state": after.state, "before": before.state}
@@ -187,7 +192,7 @@ class Lifecycles:
     def change(self, node: str, transition: str, future: Future[TransitionResult]) -> None:
         """Have a node make a transition; the result says in words why it was not made."""
         node = full_name(node)
-        facts = ChangeFacts()
+        facts = ChangeFacts(transition)
         asked_s = time.monotonic()
 
         def end(error: str) -> None:
@@ -197,10 +202,10 @@ class Lifecycles:
                 self._take_events(followed)
                 followed.again = True
                 erred = followed.erred_s >= asked_s
-            why = error or why_not(node, transition, facts, erred=erred)
+            why = error or why_not(node, facts, erred=erred)
             future.set_result(TransitionResult(node, transition, facts.after.state, why))
 
-        self._exchanges.begin(node, change(transition, facts), SERVICES, ANSWER_WITHIN_S, end)
+        self._exchanges.begin(node, change(facts), SERVICES, ANSWER_WITHIN_S, end)
 
     def close(self) -> None:
         while self._followed:

@@ -57,14 +57,14 @@ def _state(me: Guest, node: str) -> str:
     arg("node_name", help="Name of the ROS node"), arg("transition", help="The lifecycle transition"),
 )  # fmt: skip
 def set_state(args: argparse.Namespace) -> str | None:
-    """Trigger it by its name; unlike in the real tool, a failure is exit code 1."""
-    facts = ChangeFacts()
+    """Trigger it by its name or number; unlike in the real tool, a failure is exit code 1."""
+    facts = ChangeFacts(args.transition)
     with joined(args) as me:
         node = me.find(args.node_name, GET_STATE)
         if not node:
             return NOT_FOUND
-        me.carry_out(node, change(args.transition, facts), SERVICES)
-    if why := why_not(node, args.transition, facts, erred=False):
+        me.carry_out(node, change(facts), SERVICES)
+    if why := why_not(node, facts, erred=False):
         return f"Transitioning failed: {localized(why)}"
     print("Transitioning successful")
     return None

@@ -52,6 +52,19 @@ rclpy.spin(node)
 """
 
 
+SLOW = """
+import time, rclpy
+from rclpy.lifecycle import LifecycleNode
+class Slow(LifecycleNode):
+    def on_configure(self, state):
+        time.sleep(600)
+rclpy.init()
+node = Slow("slow")
+print("here", flush=True)
+rclpy.spin(node)
+"""
+
+
 @contextmanager
 def program(text: str, domain: int) -> Iterator[subprocess.Popen[str]]:
     """A program of somebody's own, until it says that it is there."""
@@ -109,6 +122,14 @@ def test_a_service_whose_node_dies_of_the_call_is_told(ros_domain: int, monkeypa
         asked = typed("service", "call", "/die", "std_srvs/srv/Trigger", "--timeout", "60")
     assert asked.code == 1
     assert "/die has gone before it answered" in asked.err
+
+
+def test_a_transition_may_take_as_long_as_the_option_says(ros_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(ros_domain))
+    with program(SLOW, ros_domain):
+        asked = typed("lifecycle", "set", "/slow", "configure", "--timeout", "0.5")
+    assert asked.code == 1
+    assert "/slow has not answered within 0.5 s" in asked.err
 
 
 @contextmanager

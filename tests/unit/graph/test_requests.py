@@ -141,22 +141,23 @@ def possible(*transitions: tuple[int, str]) -> dict[str, Any]:
 
 
 def test_what_is_not_possible_is_not_asked_for() -> None:
-    facts = ChangeFacts()
-    asked = talk(change("activate", facts), state("active"), possible((4, "deactivate")))
+    facts = ChangeFacts("activate")
+    asked = talk(change(facts), state("active"), possible((4, "deactivate")))
     assert [request.service for request in asked] == ["get_state", "get_available_transitions"]
     assert (facts.success, facts.after.state) == (None, "active")
 
 
-def test_a_transition_is_asked_for_by_number_and_name_and_given_time() -> None:
-    facts = ChangeFacts()
+@pytest.mark.parametrize("given", ["configure", "1"])
+def test_a_transition_is_asked_for_by_number_and_name_and_given_time(given: str) -> None:
+    facts = ChangeFacts(given)
     configure = possible((1, "configure"))
     asked = talk(
-        change("configure", facts),
+        change(facts),
         state("unconfigured"), configure, {"success": True}, state("inactive"), possible(),
     )  # fmt: skip
     wanted: dict[str, Value] = {"transition": {"id": 1, "label": "configure"}}
     assert asked[2] == NodeRequest("change_state", wanted, CHANGE_WITHIN_S)
-    assert (facts.success, facts.after.state) == (True, "inactive")
+    assert (facts.transition, facts.success, facts.after.state) == ("configure", True, "inactive")
 
 
 def test_only_a_node_that_serves_its_state_by_the_right_type_is_managed() -> None:
