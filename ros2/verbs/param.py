@@ -71,9 +71,14 @@ def get(args: argparse.Namespace) -> str | None:
             return NOT_FOUND
         request = GetParameters.Request(names=[args.parameter_name])
         answer = me.call(f"{node}/get_parameters", GetParameters, node, request)
-    number = answer.values[0].type if answer.values else 0
-    if number not in range(1, len(TYPES)):
+    if not answer.values:
         return "Parameter not set"
+    number = answer.values[0].type
+    if number == 0:
+        print("None" if args.hide_type else "Parameter not set.")
+        return None
+    if number >= len(TYPES):
+        return f"Unknown parameter type '{number}'"
     # As the message has it: an array prints as array('d', ...).
     held = getattr(answer.values[0], f"{TYPES[number]}_value")
     kind, _, many = _kind(TYPES[number]).partition(" ")

@@ -159,6 +159,8 @@ def test_parameters() -> None:
     assert out("param", "get", "turtle", "on") == "Boolean value is: True\n"
     assert out("param", "get", "/turtle", "name", "--hide-type") == "лис\n"
     assert out("param", "get", "/turtle", "gains") == "Double values are: array('d', [1.0, 2.5])\n"
+    assert out("param", "get", "/turtle", "later") == "Parameter not set.\n"
+    assert out("param", "get", "/turtle", "later", "--hide-type") == "None\n"
     assert typed("param", "get", "/turtle", "no").err == "Parameter not set\n"
     assert typed("param", "get", "/nobody", "no").err == "Node not found\n"
     assert out("param", "set", "/turtle", "speed", "0.75") == "Set parameter successful\n"

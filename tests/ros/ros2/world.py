@@ -42,6 +42,7 @@ class World(Peer):
         node.declare_parameter("name", "лис")
         node.declare_parameter("on", value=True)
         node.declare_parameter("gains", [1.0, 2.5])
+        node.declare_parameter("later", descriptor=ParameterDescriptor(dynamic_typing=True))
         node.add_on_set_parameters_callback(_refuses)
 
     def close(self) -> None:
