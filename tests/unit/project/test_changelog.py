@@ -11,9 +11,13 @@ from launcher.wire import VERSION
 TEXT = (Path(__file__).parents[3] / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
+WORDS = 12
+"""What begins with so many equal words tells the same, if with another list."""
+
+
 def test_no_paragraph_stands_twice() -> None:
     paragraphs = re.split(r"\n(?=- |#|\n)", TEXT)
-    counted = Counter(" ".join(each.split()) for each in paragraphs if len(each.split()) > 3)
+    counted = Counter(" ".join(each.split()[:WORDS]) for each in paragraphs if len(each.split()) > 3)
     assert [each for each, count in counted.items() if count > 1] == []
 
 
