@@ -156,7 +156,8 @@ class EchoTree(Rows):
     def _begin(self, topic: str) -> None:
         self._topic = topic
         self.message = self._waiting = None
-        self._lines, self._rows, self.chosen = [], (), ""
+        # The rows stay until others are shown: by them it is known how many there were.
+        self._lines, self.chosen = [], ""
         self.pause(False)
         self.scroll_to(0, 0, animate=False, immediate=True)
 

@@ -89,3 +89,17 @@ async def test_a_fold_outlives_the_next_message_and_a_visit_to_another_topic() -
         assert "angle_min" in seen(app)
         tree.show_message("/joint_states", JOINTS)
         assert "stamp" in seen(app)
+
+
+async def test_the_scroll_bar_of_a_long_message_goes_with_it() -> None:
+    tree = EchoTree()
+    app = Bare(tree)
+    async with app.run_test(size=(60, 5)) as pilot:
+        tree.show_message("/joint_states", JOINTS)
+        tree.show_message("/long", {f"field{number}": number for number in range(50)})
+        await pilot.pause()
+        bars = [tree.show_vertical_scrollbar]
+        tree.show_words("/silent", "no message yet")
+        await pilot.pause()
+        assert [*bars, tree.show_vertical_scrollbar] == [True, False]
+        assert "no message yet" in seen(app)
