@@ -37,8 +37,8 @@ _LARGEST = re.compile(r"\x1b\[\?2;0;(\d+);(\d+)S")
 _ANSWER = re.compile(r"\x1b\[\?[\d;]*[cS]|\x1b\[6;\d+;\d+t|\x1b_G[^\x1b]*\x1b\\")
 _BEGINNING = re.compile(r"\x1b(\[(\?[\d;]*|6[\d;]*)?|_(G[^\x1b]{0,200}\x1b?)?)?")
 _DEFINED = re.compile(r"#(\d+);2;\d+;\d+;\d+")
-ANSWERED_WITHIN_S = 10.0
-"""What comes later is no answer."""
+ANSWERED_WITHIN_S = 60.0
+"""What comes later is no answer: a slow line is, another program may have read it."""
 PIECES_WITHIN_S = 0.1
 """As long as Textual waits for the rest of a sequence."""
 SIXEL, FEWEST_COLOURS, MOST_COLOURS = "4", 64, 256
@@ -115,13 +115,23 @@ class Pixels:
     _answers: str = ""
     _held: str = ""
     """What may become an answer."""
-    _asked_s: float = float("-inf")
+    _asked_s: float = 0.0
+    _questions: int = 0
+    """Those asked so far; each is answered by itself, and with several open only the last answer ends it."""
+    _answered: int = 0
+    """Written by the thread that reads keys alone, as `_questions` by that which asks."""
     _fed_s: float = 0.0
     _chars: cycle[int] = field(default_factory=lambda: cycle(range(FIRST, LAST + 1)))
 
     def asked(self, cell: tuple[int, int] = (0, 0)) -> None:
-        """Expect answers, from now on, of a terminal with cells of this size as the system knows."""
-        self._answers, self._asked_s, self._cell = "", clock.steady(), cell
+        """Expect answers, from now on, of a terminal with cells of this size as the system knows.
+
+        If they may have another size than before, there are no pixels until it has answered.
+        """
+        if 0 in cell or cell != self._cell:
+            self.graphics = None
+        self._cell, self._asked_s = cell, clock.steady()
+        self._questions += 1
 
     def sift(self, typed: str) -> str:
         """Return what was typed without the terminal's answers, which may come in pieces.
@@ -130,7 +140,9 @@ class Pixels:
         """
         now_s = clock.steady()
         late = not typed and now_s - self._fed_s > PIECES_WITHIN_S
-        if late or now_s - self._asked_s > ANSWERED_WITHIN_S:
+        if now_s - self._asked_s > ANSWERED_WITHIN_S:
+            self._answers, self._answered = "", self._questions
+        if late or self._answered == self._questions:
             held, self._held = self._held, ""
             return held + typed
         keys: list[str] = []
@@ -150,7 +162,7 @@ class Pixels:
         self._answers += answer
         if _ABLE.fullmatch(answer):
             self.graphics = graphics_of(self._answers, self._cell)
-            self._asked_s = float("-inf")
+            self._answers, self._answered = "", min(self._answered + 1, self._questions)
 
     async def made(self, rgb: NDArray[np.uint8], halves: NDArray[np.uint8]) -> PixelPicture | None:
         """Return a picture for the cells that `halves` takes, made on another thread; None if it is too large."""

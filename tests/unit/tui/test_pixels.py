@@ -56,6 +56,30 @@ def test_keys_between_answers_are_kept_however_it_comes_in_pieces(size: int) -> 
     assert pixels.graphics == Graphics("sixel", (10, 20))
 
 
+def test_with_two_questions_open_both_answers_are_taken_and_none_is_typed() -> None:
+    pixels = Pixels(wanted=True)
+    pixels.asked()
+    assert pixels.sift(f"{KITTY}{CELL}") == ""
+    pixels.asked()
+    assert pixels.sift("\x1b[?62;c") == ""
+    assert pixels.graphics == Graphics("kitty", (10, 20))
+    assert pixels.sift(f"{KITTY}\x1b[6;40;20t\x1b[?62;ca") == "a"
+    assert pixels.graphics == Graphics("kitty", (20, 40))
+    assert pixels.sift(KITTY) == KITTY
+
+
+def test_with_cells_of_another_size_there_are_no_pixels_until_the_terminal_has_answered() -> None:
+    pixels = Pixels(wanted=True)
+    pixels.asked((10, 20))
+    pixels.sift("\x1b[?62;4c")
+    pixels.asked((10, 20))
+    assert pixels.graphics == Graphics("sixel", (10, 20))
+    pixels.asked((12, 24))
+    assert pixels.graphics is None
+    pixels.sift(2 * "\x1b[?62;4c")
+    assert pixels.graphics == Graphics("sixel", (12, 24))
+
+
 def test_without_a_question_nothing_is_taken_for_an_answer() -> None:
     assert Pixels().sift(f"{KITTY}\x1b") == f"{KITTY}\x1b"
 
