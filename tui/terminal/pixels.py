@@ -17,6 +17,8 @@ from itertools import cycle
 from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakValueDictionary
 
+from textual.message import Message
+
 from tui import clock
 
 if TYPE_CHECKING:
@@ -55,6 +57,10 @@ PICTURE = re.compile(f"[{chr(FIRST)}-{chr(LAST)}]+")
 def are_wanted(wish: str, limit: int) -> bool:
     """Whether to ask for pixels, with this limit in bytes a second, 0 for none: one picture is some 100 kB."""
     return wish == "on" or (wish != "off" and not limit)
+
+
+class GraphicsChanged(Message, bubble=False):
+    """The terminal has pixels now, has them no more, or has cells of another size: what shows pictures makes them anew."""
 
 
 class Graphics(NamedTuple):
@@ -165,7 +171,10 @@ class Pixels:
             self._answers, self._answered = "", min(self._answered + 1, self._questions)
 
     async def made(self, rgb: NDArray[np.uint8], halves: NDArray[np.uint8]) -> PixelPicture | None:
-        """Return a picture for the cells that `halves` takes, made on another thread; None if it is too large."""
+        """Return a picture for the cells that `halves` takes, made on another thread.
+
+        None if it is too large, or the terminal has changed meanwhile.
+        """
         graphics, char = self.graphics, chr(next(self._chars))
         if graphics is None:
             return None
@@ -173,7 +182,7 @@ class Pixels:
         draw, erase = await asyncio.to_thread(encoded, rgb, cells, char, graphics)
         picture = PixelPicture(char, draw, erase, halves)
         self.pictures[char] = picture
-        return picture if len(draw) <= MOST_BYTES else None
+        return picture if len(draw) <= MOST_BYTES and graphics == self.graphics else None
 
 
 def encoded(rgb: NDArray[np.uint8], cells: tuple[int, int], char: str, graphics: Graphics) -> tuple[str, str]:
