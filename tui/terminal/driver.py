@@ -26,7 +26,7 @@ from textual.geometry import Size
 from tui.terminal.alt_keys import AltKeyParser
 from tui.terminal.hang_up import end_when_gone, hung_up
 from tui.terminal.output import Terminal
-from tui.terminal.pixels import KITTY_QUESTION, QUESTIONS, GraphicsChanged
+from tui.terminal.pixels import KITTY_QUESTION, QUESTIONS, GraphicsChanged, in_multiplexer
 from tui.terminal.stop_scan import PASTE_END, StopScan
 
 if TYPE_CHECKING:
@@ -231,7 +231,8 @@ class DeckDriver(LinuxDriver):
             pixels.asked(self._terminal.cell())
             if pixels.graphics != had:
                 self._app.post_message(GraphicsChanged())
-            self.write(KITTY_QUESTION)
+            if not in_multiplexer(os.environ):
+                self.write(KITTY_QUESTION)
             self.write(QUESTIONS)
 
     def _tell_size(self) -> None:

@@ -22,6 +22,8 @@ from textual.message import Message
 from tui import clock
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -57,6 +59,13 @@ PICTURE = re.compile(f"[{chr(FIRST)}-{chr(LAST)}]+")
 def are_wanted(wish: str, limit: int) -> bool:
     """Whether to ask for pixels, with this limit in bytes a second, 0 for none: one picture is some 100 kB."""
     return wish == "on" or (wish != "off" and not limit)
+
+    """The terminal has pixels now, or no more, or other cells: what shows pictures makes them anew."""
+
+
+def in_multiplexer(env: Mapping[str, str]) -> bool:
+    """Whether this is tmux or screen, also at the other end of SSH: they take kitty's question for a title."""
+    return bool(env.get("TMUX") or env.get("STY") or env.get("TERM", "").startswith(("tmux", "screen")))
 
 
 class GraphicsChanged(Message, bubble=False):

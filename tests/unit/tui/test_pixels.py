@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tui.terminal.pixels import FIRST, Graphics, PixelPicture, Pixels, are_wanted, encoded, graphics_of
+from tui.terminal.pixels import (
+    FIRST,
+    Graphics,
+    PixelPicture,
+    Pixels,
+    are_wanted,
+    encoded,
+    graphics_of,
+    in_multiplexer,
+)
 from tui.terminal.terminal_diff import TerminalDiff
 from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import LOOKS
@@ -44,6 +53,14 @@ def test_what_a_terminal_answers_says_whether_it_has_pixels(
 )
 def test_over_a_limited_line_they_are_asked_for_only_on_request(wish: str, limit: int, wanted: bool) -> None:
     assert are_wanted(wish, limit) is wanted
+
+
+@pytest.mark.parametrize(
+    ("env", "is_one"),
+    [({"TMUX": "/x"}, True), ({"STY": "1.x"}, True), ({"TERM": "tmux-256color"}, True), ({"TERM": "foot"}, False)],
+)
+def test_in_a_multiplexer_kittys_question_would_be_a_title(env: dict[str, str], is_one: bool) -> None:
+    assert in_multiplexer(env) is is_one
 
 
 @pytest.mark.parametrize("size", [1, 2, 7, 1000])
@@ -113,6 +130,16 @@ def test_a_picture_is_drawn_when_all_of_it_shows_and_in_half_blocks_when_somethi
     left = diff.changes("\x1b[2;1Hwords\x1b[3;1Hwords")
     assert "<erased>" in left
     assert "▀" not in left
+
+
+def test_text_of_uncertain_width_left_of_a_picture_does_not_erase_it() -> None:
+    diff = TerminalDiff({ONE: picture(ONE)})
+    diff.forget(10, 5)
+    diff.changes(cells(ONE))
+    beside = diff.changes("\x1b[2;1H\u0e01")
+    assert "<erased>" not in beside
+    assert "<0>" in beside
+    assert "<erased>" in diff.changes("\x1b[2;2H界")
 
 
 def test_a_picture_in_the_last_row_is_not_drawn_in_pixels_as_the_screen_would_scroll() -> None:
