@@ -33,6 +33,7 @@ KITTY_QUESTION = "\x1b_Gi=1,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\"
 QUESTIONS = "\x1b[16t\x1b[?1;3;256S\x1b[?2;1;0S\x1b[c"
 """The size of a cell, 256 colours for sixels, their greatest size, and what it is able to: every
 terminal answers that, and last. Source: xterm, ctlseqs."""
+KITTY_ERASE_ALL = "\x1b_Ga=d,d=A,q=2\x1b\\"
 _ABLE = re.compile(r"\x1b\[\?([\d;]*)c")
 _KITTY = re.compile(r"\x1b_Gi=1;OK\x1b\\")
 _CELL = re.compile(r"\x1b\[6;(\d+);(\d+)t")
@@ -49,6 +50,8 @@ SIXEL, FEWEST_COLOURS, MOST_COLOURS = "4", 64, 256
 """With fewer colours, half-blocks look better: they have them all."""
 MOST_BYTES = 500_000
 """Of one picture: half of what may wait for the terminal."""
+MOST_S = 5.0
+"""Of the line that one picture may take if it has a limit: half of the greatest debt."""
 MOST_FOR_KITTY = 300_000
 """Pixels, which it takes losslessly."""
 FIRST, LAST = 0x100000, 0x10FFFD
@@ -60,8 +63,6 @@ def are_wanted(wish: str, limit: int) -> bool:
     """Whether to ask for pixels, with this limit in bytes a second, 0 for none: one picture is some 100 kB."""
     return wish == "on" or (wish != "off" and not limit)
 
-    """The terminal has pixels now, or no more, or other cells: what shows pictures makes them anew."""
-
 
 def in_multiplexer(env: Mapping[str, str]) -> bool:
     """Whether this is tmux or screen, also at the other end of SSH: they take kitty's question for a title."""
@@ -69,7 +70,12 @@ def in_multiplexer(env: Mapping[str, str]) -> bool:
 
 
 class GraphicsChanged(Message, bubble=False):
-    """The terminal has pixels now, has them no more, or has cells of another size: what shows pictures makes them anew."""
+    """The terminal has pixels now, or no more, or other cells: what shows pictures makes them anew."""
+
+
+def most_bytes(limit: int) -> int:
+    """Return how large a picture may be with this limit in bytes a second, 0 for none."""
+    return min(MOST_BYTES, round(MOST_S * limit)) if limit else MOST_BYTES
 
 
 class Graphics(NamedTuple):
@@ -124,6 +130,7 @@ class Pixels:
     wanted: bool = False
     """Whether to ask at all."""
     graphics: Graphics | None = None
+    most_bytes: int = MOST_BYTES
     pictures: WeakValueDictionary[str, PixelPicture] = field(default_factory=WeakValueDictionary)
     """Those that somebody shows, by character."""
     _cell: tuple[int, int] = (0, 0)
@@ -191,7 +198,7 @@ class Pixels:
         draw, erase = await asyncio.to_thread(encoded, rgb, cells, char, graphics)
         picture = PixelPicture(char, draw, erase, halves)
         self.pictures[char] = picture
-        return picture if len(draw) <= MOST_BYTES and graphics == self.graphics else None
+        return picture if len(draw) <= self.most_bytes and graphics == self.graphics else None
 
 
 def encoded(rgb: NDArray[np.uint8], cells: tuple[int, int], char: str, graphics: Graphics) -> tuple[str, str]:

@@ -247,6 +247,9 @@ class ImageView(OneStyle, Widget):
         """Draw a picture in pixels, made on another thread, and then the newest if there is another."""
         try:
             made = await self._host.pixels.made(picture.rgb, halves)
+            # Another picture may have been sent meanwhile.
+            while self._encoding is halves and (wait_s := self._host.bandwidth.wait_s()):  # noqa: ASYNC110 - it says when
+                await asyncio.sleep(wait_s)
         finally:
             is_wanted = self._encoding is halves
             if is_wanted:

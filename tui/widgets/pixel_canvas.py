@@ -82,7 +82,10 @@ class PixelCanvas:
                 self._shown, self._wanted = self._wanted, None
                 height, width = self._shown.shape[:2]
                 halves = shrink(self._shown, width // (2 * FINER), height // (2 * FINER))
-                self._picture = await self._host.pixels.made(self._shown, halves)
+                graphics, made = self._host.pixels.graphics, await self._host.pixels.made(self._shown, halves)
+                while wait_s := self._host.bandwidth.wait_s():  # noqa: ASYNC110 - it says when
+                    await asyncio.sleep(wait_s)
+                self._picture = made if graphics == self._host.pixels.graphics else None
                 self._drawing.redraw()
         finally:
             self._making = False

@@ -37,6 +37,7 @@ def test_a_terminal_that_has_sixels_gets_them_and_no_key_is_lost_among_its_answe
     terminal: Terminal, told: Path
 ) -> None:
     sent(terminal, b"\x1b[c")
+    wait_until(lambda: "ready" in told.read_text(), "the first picture")
     terminal.type(f"a{ANSWERS[0]} {ANSWERS[1]}b{''.join(ANSWERS[2:])}p")
     sent(terminal, SIXELS)
     wait_until(lambda: "key p" in told.read_text(), "the last key")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from textual.app import App, ComposeResult
@@ -122,6 +124,10 @@ def picture_columns(view: ImageView) -> int:
     return 0 if found is None else len(found[0])
 
 
+def shows(view: ImageView, columns: int) -> bool:
+    return picture_columns(view) == columns
+
+
 async def test_with_cells_of_another_size_a_still_picture_is_made_anew() -> None:
     app = PictureApp()
     async with app.run_test(size=(50, 9)):
@@ -129,7 +135,7 @@ async def test_with_cells_of_another_size_a_still_picture_is_made_anew() -> None
         for cell, columns in (((10, 20), 16), ((10, 10), 8)):
             app.pixels.graphics = Graphics("sixel", cell)
             app.view.post_message(GraphicsChanged())
-            await until(lambda columns=columns: picture_columns(app.view) == columns, "the picture in pixels", 10)
+            await until(partial(shows, app.view, columns), "the picture in pixels", 10)
         app.pixels.graphics = None
         app.view.post_message(GraphicsChanged())
         await until(lambda: not picture_columns(app.view), "the picture in half-blocks", 10)
@@ -152,3 +158,15 @@ async def test_pictures_that_come_while_one_is_on_its_way_into_pixels_count_as_l
         for color in (RED, BLUE, RED):
             app.view.show(plain_picture(16, 16, color), "rgb8", hz="15")
         await until(lambda: " of 15 Hz" in app.view.caption, "the caption")
+
+
+async def test_a_picture_in_pixels_waits_for_what_was_sent_while_it_was_made() -> None:
+    app = PictureApp()
+    app.pixels.graphics = Graphics("sixel", (10, 20))
+    async with app.run_test(size=(50, 9)) as pilot:
+        app.view.show(plain_picture(16, 16, RED))
+        app.bandwidth.behind = True
+        await pilot.pause(0.3)
+        assert not picture_columns(app.view)
+        app.bandwidth.behind = False
+        await until(lambda: picture_columns(app.view), "the picture in pixels", 10)

@@ -14,6 +14,7 @@ from tui.terminal.pixels import (
     encoded,
     graphics_of,
     in_multiplexer,
+    most_bytes,
 )
 from tui.terminal.terminal_diff import TerminalDiff
 from tui.widgets.canvas import Canvas
@@ -92,7 +93,7 @@ def test_with_cells_of_another_size_there_are_no_pixels_until_the_terminal_has_a
     pixels.asked((10, 20))
     assert pixels.graphics == Graphics("sixel", (10, 20))
     pixels.asked((12, 24))
-    assert pixels.graphics is None
+    assert [pixels.graphics] == [None]
     pixels.sift(2 * "\x1b[?62;4c")
     assert pixels.graphics == Graphics("sixel", (12, 24))
 
@@ -166,6 +167,9 @@ async def test_noise_that_would_fill_the_line_is_not_sent() -> None:
     pixels, halves = Pixels(graphics=Graphics("sixel", (10, 20))), np.zeros((50, 80, 3), np.uint8)
     assert await pixels.made(noise, halves) is None
     assert await pixels.made(noise // 255, halves) is not None
+    pixels.most_bytes = most_bytes(100)
+    assert await pixels.made(noise // 255, halves) is None
+    assert most_bytes(0) == most_bytes(1_000_000) > most_bytes(40_000)
 
 
 def test_each_dot_of_a_canvas_in_pixels_has_its_own_colour_and_a_sign_is_a_spot() -> None:
