@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rich.cells import cell_len
 
-from tui.terminal.pixels import PICTURE, PixelPicture
+from tui.terminal.pixels import KITTY_ERASE_ALL, PICTURE, PixelPicture
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -81,6 +81,8 @@ class TerminalDiff:
         """Those that the terminal shows in pixels."""
         self._places: dict[tuple[int, ...], tuple[int, int]] = {}
         """Column and row where one of this shape was last seen whole: the next one is there, too."""
+        self.erase_all = ""
+        """What takes away every picture ever drawn; empty if any text does."""
         self._width = self._height = 0
         self._rows: list[list[ScreenCell | None]] = []
         self._at: tuple[int, int] | None = None
@@ -181,6 +183,7 @@ class TerminalDiff:
                 if char in self._claimed:
                     self._go(*self._places[picture.halves.shape])
                     self._out.append(picture.draw)
+                    self.erase_all = KITTY_ERASE_ALL if picture.erase else ""
                     self._at = self._sgr = None
                     self._drawn[char] = picture
                 continue
