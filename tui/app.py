@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -43,7 +43,7 @@ from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
 from tui.terminal.harmless import Harmless
 from tui.terminal.key_queue import KeyQueue
-from tui.terminal.pixels import Pixels
+from tui.terminal.pixels import GraphicsChanged, Pixels
 from tui.terminal.stall_detector import KeyStallDetector
 from tui.themes import HIGH_CONTRAST, after, few_colours
 from tui.viewing.view import View
@@ -436,11 +436,21 @@ class DeckApp(App[int], Acting):
         """Switch to this language; every widget draws itself anew, and those that keep words hear of it."""
         set_language(code)
         self._remember(language=code)
-        for screen in {*self.screen_stack, *self._screens.there()}:
-            for widget in (screen, *screen.walk_children(Widget)):
-                widget.refresh(layout=True)
-                widget.post_message(LanguageChanged())
+        for widget in self._widgets():
+            widget.refresh(layout=True)
+            widget.post_message(LanguageChanged())
         self.refresh_bindings()
+
+    def _widgets(self) -> Iterator[Widget]:
+        """All of them, also those of screens that are not shown."""
+        for screen in {*self.screen_stack, *self._screens.there()}:
+            yield screen
+            yield from screen.walk_children(Widget)
+
+    def on_graphics_changed(self) -> None:
+        for widget in self._widgets():
+            widget.post_message(GraphicsChanged())
+        self.redraw()
 
     def switch_language(self) -> None:
         self.speak(LANGUAGES[(LANGUAGES.index(language()) + 1) % len(LANGUAGES)])

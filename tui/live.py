@@ -29,7 +29,7 @@ from tui.session.requests import OpenRequest
 from tui.settings import Settings, SettingsError, load, save, settings_path
 from tui.terminal.bandwidth import Bandwidth, default_limit
 from tui.terminal.driver import DeckDriver
-from tui.terminal.pixels import Pixels, are_wanted
+from tui.terminal.pixels import Pixels, are_wanted, most_bytes
 from tui.terminal.stray_output import StrayOutput
 from tui.themes import HIGH_CONTRAST
 
@@ -175,7 +175,7 @@ def run_live(request: OpenRequest, lang: str | None, bandwidth: int | None = Non
             driver_class=DeckDriver,
             journal=terminal.note_fault,
             bandwidth=Bandwidth(limit),
-            pixels=Pixels(are_wanted(pixels or settings.pixels, limit)),
+            pixels=Pixels(are_wanted(pixels or settings.pixels, limit), most_bytes=most_bytes(limit)),
             environment=terminal,
         )
         run(app.run_async())

@@ -26,7 +26,7 @@ from textual.geometry import Size
 from tui.terminal.alt_keys import AltKeyParser
 from tui.terminal.hang_up import end_when_gone, hung_up
 from tui.terminal.output import Terminal
-from tui.terminal.pixels import KITTY_QUESTION, QUESTIONS
+from tui.terminal.pixels import KITTY_QUESTION, QUESTIONS, GraphicsChanged, in_multiplexer
 from tui.terminal.stop_scan import PASTE_END, StopScan
 
 if TYPE_CHECKING:
@@ -129,11 +129,19 @@ class DeckDriver(LinuxDriver):
         if any(stops for _piece, stops in pieces):
             self._deck.stop_wheels()
         for piece, stops in pieces:
-            self._parse(self._deck.pixels.sift(self._decode(piece)), stopped=stops)
+            self._parse(self._sifted(self._decode(piece)), stopped=stops)
         if self._parser.dropped and not self._has_told:
             self._has_told = True
             self._deck.tell_unread(self._parser.dropped)
         return True
+
+    def _sifted(self, typed: str) -> str:
+        """Return what was typed without answers; tell the app what they change."""
+        had = self._deck.pixels.graphics
+        keys = self._deck.pixels.sift(typed)
+        if self._deck.pixels.graphics != had:
+            self.send_message(GraphicsChanged())
+        return keys
 
     def _parse(self, text: str, *, stopped: bool = False) -> None:
         """Parse what was typed; a key that has stopped the wheels already is left out."""
@@ -151,7 +159,7 @@ class DeckDriver(LinuxDriver):
         if self._scan.pasting_s > PASTE_ENDS_S:
             self._scan.end_paste()
             self._parse(PASTE_END)
-        self._parse(self._deck.pixels.sift(""))
+        self._parse(self._sifted(""))
         for event in self._parser.tick():
             self.process_message(event)
 
@@ -219,8 +227,12 @@ class DeckDriver(LinuxDriver):
         pixels = self._deck.pixels
         # The console of Linux would print a part of it.
         if pixels.wanted and not self._terminal.leaving and os.environ.get("TERM") != "linux":
+            had = pixels.graphics
             pixels.asked(self._terminal.cell())
-            self.write(KITTY_QUESTION)
+            if pixels.graphics != had:
+                self._app.post_message(GraphicsChanged())
+            if not in_multiplexer(os.environ):
+                self.write(KITTY_QUESTION)
             self.write(QUESTIONS)
 
     def _tell_size(self) -> None:

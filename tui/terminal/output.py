@@ -50,6 +50,8 @@ class Terminal:
         self._size = 0
         self._busy = False
         self._stalled = False
+        self._has_dropped = False
+        """Whether output was dropped since the last that was written: pictures may have stayed."""
         self.gone = False
         """Whether writing to it has become impossible."""
         self.leaving = False
@@ -61,13 +63,15 @@ class Terminal:
         with self._lock:
             if self.gone or (self._stalled and not self.leaving):
                 return
-            data = self._changes(text).encode("utf-8", "replace")
+            left = self._diff.erase_all if self._has_dropped else ""
+            self._has_dropped = False
+            data = (left + self._changes(text)).encode("utf-8", "replace")
             self._waiting.append(data)
             self._size += len(data)
             self._bandwidth.written(len(data))
             self._bandwidth.behind = True
             if self._size > MOST_WAITING:
-                self._stalled = True
+                self._stalled = self._has_dropped = True
                 self._terminal_size = (0, 0)
                 self._waiting.clear()
                 self._size = 0

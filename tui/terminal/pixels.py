@@ -17,9 +17,13 @@ from itertools import cycle
 from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakValueDictionary
 
+from textual.message import Message
+
 from tui import clock
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -29,6 +33,7 @@ KITTY_QUESTION = "\x1b_Gi=1,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\"
 QUESTIONS = "\x1b[16t\x1b[?1;3;256S\x1b[?2;1;0S\x1b[c"
 """The size of a cell, 256 colours for sixels, their greatest size, and what it is able to: every
 terminal answers that, and last. Source: xterm, ctlseqs."""
+KITTY_ERASE_ALL = "\x1b_Ga=d,d=A,q=2\x1b\\"
 _ABLE = re.compile(r"\x1b\[\?([\d;]*)c")
 _KITTY = re.compile(r"\x1b_Gi=1;OK\x1b\\")
 _CELL = re.compile(r"\x1b\[6;(\d+);(\d+)t")
@@ -37,14 +42,16 @@ _LARGEST = re.compile(r"\x1b\[\?2;0;(\d+);(\d+)S")
 _ANSWER = re.compile(r"\x1b\[\?[\d;]*[cS]|\x1b\[6;\d+;\d+t|\x1b_G[^\x1b]*\x1b\\")
 _BEGINNING = re.compile(r"\x1b(\[(\?[\d;]*|6[\d;]*)?|_(G[^\x1b]{0,200}\x1b?)?)?")
 _DEFINED = re.compile(r"#(\d+);2;\d+;\d+;\d+")
-ANSWERED_WITHIN_S = 10.0
-"""What comes later is no answer."""
+ANSWERED_WITHIN_S = 60.0
+"""What comes later is no answer: a slow line is, another program may have read it."""
 PIECES_WITHIN_S = 0.1
 """As long as Textual waits for the rest of a sequence."""
 SIXEL, FEWEST_COLOURS, MOST_COLOURS = "4", 64, 256
 """With fewer colours, half-blocks look better: they have them all."""
 MOST_BYTES = 500_000
 """Of one picture: half of what may wait for the terminal."""
+MOST_S = 5.0
+"""Of the line that one picture may take if it has a limit: half of the greatest debt."""
 MOST_FOR_KITTY = 300_000
 """Pixels, which it takes losslessly."""
 FIRST, LAST = 0x100000, 0x10FFFD
@@ -55,6 +62,20 @@ PICTURE = re.compile(f"[{chr(FIRST)}-{chr(LAST)}]+")
 def are_wanted(wish: str, limit: int) -> bool:
     """Whether to ask for pixels, with this limit in bytes a second, 0 for none: one picture is some 100 kB."""
     return wish == "on" or (wish != "off" and not limit)
+
+
+def in_multiplexer(env: Mapping[str, str]) -> bool:
+    """Whether this is tmux or screen, also at the other end of SSH: they take kitty's question for a title."""
+    return bool(env.get("TMUX") or env.get("STY") or env.get("TERM", "").startswith(("tmux", "screen")))
+
+
+class GraphicsChanged(Message, bubble=False):
+    """The terminal has pixels now, or no more, or other cells: what shows pictures makes them anew."""
+
+
+def most_bytes(limit: int) -> int:
+    """Return how large a picture may be with this limit in bytes a second, 0 for none."""
+    return min(MOST_BYTES, round(MOST_S * limit)) if limit else MOST_BYTES
 
 
 class Graphics(NamedTuple):
@@ -109,19 +130,30 @@ class Pixels:
     wanted: bool = False
     """Whether to ask at all."""
     graphics: Graphics | None = None
+    most_bytes: int = MOST_BYTES
     pictures: WeakValueDictionary[str, PixelPicture] = field(default_factory=WeakValueDictionary)
     """Those that somebody shows, by character."""
     _cell: tuple[int, int] = (0, 0)
     _answers: str = ""
     _held: str = ""
     """What may become an answer."""
-    _asked_s: float = float("-inf")
+    _asked_s: float = 0.0
+    _questions: int = 0
+    """Those asked so far; each is answered by itself, and with several open only the last answer ends it."""
+    _answered: int = 0
+    """Written by the thread that reads keys alone, as `_questions` by that which asks."""
     _fed_s: float = 0.0
     _chars: cycle[int] = field(default_factory=lambda: cycle(range(FIRST, LAST + 1)))
 
     def asked(self, cell: tuple[int, int] = (0, 0)) -> None:
-        """Expect answers, from now on, of a terminal with cells of this size as the system knows."""
-        self._answers, self._asked_s, self._cell = "", clock.steady(), cell
+        """Expect answers, from now on, of a terminal with cells of this size as the system knows.
+
+        If they may have another size than before, there are no pixels until it has answered.
+        """
+        if 0 in cell or cell != self._cell:
+            self.graphics = None
+        self._cell, self._asked_s = cell, clock.steady()
+        self._questions += 1
 
     def sift(self, typed: str) -> str:
         """Return what was typed without the terminal's answers, which may come in pieces.
@@ -130,7 +162,9 @@ class Pixels:
         """
         now_s = clock.steady()
         late = not typed and now_s - self._fed_s > PIECES_WITHIN_S
-        if late or now_s - self._asked_s > ANSWERED_WITHIN_S:
+        if now_s - self._asked_s > ANSWERED_WITHIN_S:
+            self._answers, self._answered = "", self._questions
+        if late or self._answered == self._questions:
             held, self._held = self._held, ""
             return held + typed
         keys: list[str] = []
@@ -150,10 +184,13 @@ class Pixels:
         self._answers += answer
         if _ABLE.fullmatch(answer):
             self.graphics = graphics_of(self._answers, self._cell)
-            self._asked_s = float("-inf")
+            self._answers, self._answered = "", min(self._answered + 1, self._questions)
 
     async def made(self, rgb: NDArray[np.uint8], halves: NDArray[np.uint8]) -> PixelPicture | None:
-        """Return a picture for the cells that `halves` takes, made on another thread; None if it is too large."""
+        """Return a picture for the cells that `halves` takes, made on another thread.
+
+        None if it is too large, or the terminal has changed meanwhile.
+        """
         graphics, char = self.graphics, chr(next(self._chars))
         if graphics is None:
             return None
@@ -161,7 +198,7 @@ class Pixels:
         draw, erase = await asyncio.to_thread(encoded, rgb, cells, char, graphics)
         picture = PixelPicture(char, draw, erase, halves)
         self.pictures[char] = picture
-        return picture if len(draw) <= MOST_BYTES else None
+        return picture if len(draw) <= self.most_bytes and graphics == self.graphics else None
 
 
 def encoded(rgb: NDArray[np.uint8], cells: tuple[int, int], char: str, graphics: Graphics) -> tuple[str, str]:

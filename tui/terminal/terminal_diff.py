@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rich.cells import cell_len
 
-from tui.terminal.pixels import PixelPicture
+from tui.terminal.pixels import KITTY_ERASE_ALL, PICTURE, PixelPicture
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -81,6 +81,8 @@ class TerminalDiff:
         """Those that the terminal shows in pixels."""
         self._places: dict[tuple[int, ...], tuple[int, int]] = {}
         """Column and row where one of this shape was last seen whole: the next one is there, too."""
+        self.erase_all = ""
+        """What takes away every picture ever drawn; empty if any text does."""
         self._width = self._height = 0
         self._rows: list[list[ScreenCell | None]] = []
         self._at: tuple[int, int] | None = None
@@ -181,6 +183,7 @@ class TerminalDiff:
                 if char in self._claimed:
                     self._go(*self._places[picture.halves.shape])
                     self._out.append(picture.draw)
+                    self.erase_all = KITTY_ERASE_ALL if picture.erase else ""
                     self._at = self._sgr = None
                     self._drawn[char] = picture
                 continue
@@ -214,14 +217,19 @@ class TerminalDiff:
                     self._send(x, y, "▀", "38;2;{};{};{};48;2;{};{};{}".format(*upper, *lower))
 
     def _unsure(self, x: int, y: int, text: str, sgr: str) -> int:
-        """Send text whose width is uncertain, and forget its cells."""
+        """Send text whose width is uncertain, and forget its cells, but not whose picture the others show."""
         self._go(x, y)
         self._wear(sgr)
         self._out.append(text)
         self._at = None
         if 0 <= y < self._height:
-            row = self._rows[y]
-            row[max(0, x - 1) :] = [None] * (self._width - max(0, x - 1))
+            row, end = self._rows[y], x + cell_len(text)
+            for at in range(max(0, x - 1), self._width):
+                cell = row[at]
+                if cell is not None and PICTURE.fullmatch(cell.char) and not x <= at < end:
+                    self._claimed[cell.char] = None
+                else:
+                    row[at] = None
         return x + cell_len(text)
 
     def _send(self, x: int, y: int, text: str, sgr: str) -> None:

@@ -159,6 +159,9 @@ class Drawing(OneStyle, Widget):
     def on_language_changed(self) -> None:
         self.on_resize()
 
+    def on_graphics_changed(self) -> None:
+        self.on_resize()
+
     def render_lines(self, crop: Region) -> list[Strip]:
         """Some lines, with styles computed once for all of them: Textual takes 0.2 ms for one.
 

@@ -90,8 +90,8 @@ class ImageView(OneStyle, Widget):
         self.caption = ""
         self._in_pixels: PixelPicture | None = None
         """The same, if the terminal is to show its pixels."""
-        self._encoding = False
-        """Whether a picture is on its way into pixels."""
+        self._encoding: Pixels | None = None
+        """The half-blocks of the picture that is on its way into pixels."""
         self._scale: ImageScale | None = None
         self.words = ("", "")
         """Headline and detail shown in place of a picture, both empty if there is one."""
@@ -136,9 +136,7 @@ class ImageView(OneStyle, Widget):
             raise ValueError(f"a picture has the shape (height, width, 3), not {rgb.shape}")
         self._newest = ShownPicture(rgb, caption, scale, hz)
         self.words = ("", "")
-        if self._encoding:
-            return
-        if self._waits:
+        if self._waits or self._encoding is not None:
             self._pace.left_out(clock.steady())
         elif self._shown is None or not (wait_s := self._host.bandwidth.wait_s()):
             self._take(self._newest)
@@ -150,10 +148,13 @@ class ImageView(OneStyle, Widget):
         if self._newest is not None and self._shown is not None:
             self._take(self._newest)
 
+    def on_graphics_changed(self) -> None:
+        self._begin_again()
+
     def show_words(self, headline: str, detail: str = "") -> None:
         if self._newest is None and (headline, detail) == self.words:
             return
-        self._newest = self._shown = self._in_pixels = None
+        self._newest = self._shown = self._in_pixels = self._encoding = None
         self._waits = False
         self.words, self.caption = (headline, detail), ""
         self._scale = None
@@ -204,7 +205,11 @@ class ImageView(OneStyle, Widget):
         return cast("HasBandwidth", self.app)
 
     def _on_resize(self, _event: Resize) -> None:
-        self._shown = self._in_pixels = None
+        self._begin_again()
+
+    def _begin_again(self) -> None:
+        """Take the newest picture as if it were the first: what is on its way into pixels has another size."""
+        self._shown = self._in_pixels = self._encoding = None
         if self._newest is not None:
             self._take(self._newest)
 
@@ -230,9 +235,9 @@ class ImageView(OneStyle, Widget):
         has_pixels = self._host.pixels.graphics is not None
         if not has_pixels or self._in_pixels is None:
             self._draw(picture.rgb)
-        if has_pixels and self._shown is not None and not self._encoding and min(self.pixel_size) > 0:
-            self._encoding = True
-            self.run_worker(self._encode(picture, self._halves(picture.rgb)), group="pixels")
+        if has_pixels and self._shown is not None and self._encoding is None and min(self.pixel_size) > 0:
+            self._encoding = self._halves(picture.rgb)
+            self.run_worker(self._encode(picture, self._encoding), group="pixels")
         caption = picture.caption + self._rate_words(picture.hz, now_s)
         if caption != self.caption:
             self.caption = caption
@@ -242,9 +247,14 @@ class ImageView(OneStyle, Widget):
         """Draw a picture in pixels, made on another thread, and then the newest if there is another."""
         try:
             made = await self._host.pixels.made(picture.rgb, halves)
+            # Another picture may have been sent meanwhile.
+            while self._encoding is halves and (wait_s := self._host.bandwidth.wait_s()):  # noqa: ASYNC110 - it says when
+                await asyncio.sleep(wait_s)
         finally:
-            self._encoding = False
-        if self._newest is None or self._shown is None:
+            is_wanted = self._encoding is halves
+            if is_wanted:
+                self._encoding = None
+        if not is_wanted or self._newest is None or self._shown is None:
             return
         fits = self._shown.shape == halves.shape
         if fits and made is not None:
@@ -265,8 +275,10 @@ class ImageView(OneStyle, Widget):
             return _(" · {hz} Hz").format(hz=hz)
         if self._host.bandwidth.is_slow:
             words = _(" · {shown} of {hz} Hz: the terminal is slow")
-        else:
+        elif self._host.bandwidth.limit:
             words = _(" · {shown} of {hz} Hz: limited to {limit} kB/s")
+        else:
+            words = _(" · {shown} of {hz} Hz")
         limit = decimal(f"{self._host.bandwidth.limit / 1000:g}")
         return words.format(shown=figure(shown, 1), hz=hz, limit=limit)
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from tui.terminal.bandwidth import HasBandwidth
-    from tui.terminal.pixels import PixelPicture
+    from tui.terminal.pixels import Graphics, PixelPicture
     from tui.widgets.canvas import Canvas
     from tui.widgets.drawing import Drawing
     from tui.widgets.image_view import Pixels
@@ -36,6 +36,8 @@ class PixelCanvas:
         self._wanted: Pixels | None = None
         """What it should show next."""
         self._making = False
+        self._graphics: Graphics | None = None
+        """What the pictures are made for."""
 
     def lines(self, columns: int, rows: int, drawn: Callable[[int, int], Canvas]) -> list[Line] | None:
         """Return what `drawn` draws on so many columns and rows, or what it drew last; None if braille has to do."""
@@ -52,8 +54,10 @@ class PixelCanvas:
         return [[Ink(self._picture.char * columns)] for _row in range(rows)]
 
     def _has_room(self, columns: int, rows: int) -> bool:
-        """Whether the terminal takes a picture of so many cells."""
+        """Whether the terminal takes a picture of so many cells; one made for other cells is thrown away."""
         graphics = self._host.pixels.graphics
+        if graphics != self._graphics:
+            self._graphics, self._picture, self._shown = graphics, None, None
         if graphics is None:
             return False
         (wide, high), largest = graphics.cell, graphics.largest
@@ -78,7 +82,10 @@ class PixelCanvas:
                 self._shown, self._wanted = self._wanted, None
                 height, width = self._shown.shape[:2]
                 halves = shrink(self._shown, width // (2 * FINER), height // (2 * FINER))
-                self._picture = await self._host.pixels.made(self._shown, halves)
+                graphics, made = self._host.pixels.graphics, await self._host.pixels.made(self._shown, halves)
+                while wait_s := self._host.bandwidth.wait_s():  # noqa: ASYNC110 - it says when
+                    await asyncio.sleep(wait_s)
+                self._picture = made if graphics == self._host.pixels.graphics else None
                 self._drawing.redraw()
         finally:
             self._making = False

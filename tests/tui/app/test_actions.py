@@ -26,6 +26,8 @@ from tui.help.screen import HelpScreen
 from tui.palette import PLACES
 from tui.screens import SCREENS, every_action
 from tui.teleop.actions import MOVES
+from tui.terminal.pixels import GraphicsChanged
+from tui.widgets.drawing import Drawing
 
 
 def footer(app: DeckApp) -> str:
@@ -237,3 +239,12 @@ async def test_no_key_of_the_tabs_is_typed_into_a_field_that_nobody_has_entered(
             await pilot.press(tab.key.split(",")[0])
             await until(partial(in_front, app, tab.id.removeprefix("screen.")), tab.id)
         assert [one for one in focused if isinstance(one, (Input, TextArea))] == []
+
+
+async def test_when_the_terminals_pixels_change_every_widget_hears_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard: list[Drawing] = []
+    monkeypatch.setattr(Drawing, "on_graphics_changed", lambda panel: heard.append(panel))  # noqa: PLW0108
+    async with opened() as (app, _pilot):
+        app.post_message(GraphicsChanged())
+        await until(lambda: heard, "a panel that has heard", 10)
+        assert not app.crashed

@@ -15,7 +15,7 @@ from textual.events import Key
 from tui.terminal.bandwidth import Bandwidth
 from tui.terminal.driver import DeckDriver
 from tui.terminal.harmless import Harmless
-from tui.terminal.pixels import Pixels
+from tui.terminal.pixels import GraphicsChanged, Pixels
 from tui.widgets.image_view import ImageView
 
 
@@ -50,6 +50,9 @@ class PictureApp(App[int]):
         rgb[..., channel] = 250
         rgb[:40, :40] = (0, 250, 0)
         self.query_one(ImageView).show(rgb, "a picture")
+
+    def on_graphics_changed(self) -> None:
+        self.query_one(ImageView).post_message(GraphicsChanged())
 
     def on_key(self, event: Key) -> None:
         self._write(f"key {event.key}")

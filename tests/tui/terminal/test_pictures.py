@@ -37,6 +37,7 @@ def test_a_terminal_that_has_sixels_gets_them_and_no_key_is_lost_among_its_answe
     terminal: Terminal, told: Path
 ) -> None:
     sent(terminal, b"\x1b[c")
+    wait_until(lambda: "ready" in told.read_text(), "the first picture")
     terminal.type(f"a{ANSWERS[0]} {ANSWERS[1]}b{''.join(ANSWERS[2:])}p")
     sent(terminal, SIXELS)
     wait_until(lambda: "key p" in told.read_text(), "the last key")
@@ -44,12 +45,19 @@ def test_a_terminal_that_has_sixels_gets_them_and_no_key_is_lost_among_its_answe
     assert [line for line in lines if line.startswith("key")] == ["key a", "key b", "key p"]
     assert "stop" in lines
     assert "unread" not in told.read_text()
+    sent(terminal, b";2;0;0;98")
     before = len(terminal.kept)
     terminal.type("w")
     sent(terminal, b"no picture", before)
     assert SIXELS not in terminal.kept[before:]
     terminal.type("q")
     assert terminal.wait_exit() == 0
+
+
+def test_a_picture_that_is_there_already_becomes_one_in_pixels_with_the_answer(terminal: Terminal) -> None:
+    sent(terminal, HALF)
+    terminal.type("".join(ANSWERS))
+    sent(terminal, SIXELS)
 
 
 def test_where_nothing_answers_a_picture_is_in_half_blocks(terminal: Terminal) -> None:

@@ -12,12 +12,14 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pyte
 import pytest
 from rich.cells import set_cell_size
 
 from tests.waiting import wait_until
 from tui.terminal.output import MOST_WAITING, Terminal
+from tui.terminal.pixels import FIRST, KITTY_ERASE_ALL, PixelPicture
 from tui.terminal.stray_output import StrayOutput
 from tui.terminal.terminal_diff import TerminalDiff
 
@@ -65,6 +67,31 @@ def test_a_stalled_terminal_never_makes_the_writer_wait(line: tuple[int, int]) -
     finally:
         reading.set()
         reader.join(10)
+
+
+def test_pictures_that_stayed_after_a_stall_are_erased_before_anything_else(line: tuple[int, int]) -> None:
+    own, program = line
+    caught_up = threading.Event()
+    picture = PixelPicture(chr(FIRST), "<drawn>", "<erased>", np.zeros((2, 2, 3), np.uint8))
+    terminal = Terminal(program, caught_up.set, pictures={picture.char: picture})
+    terminal.write(f"\x1b[1;1H{picture.char * 2}")
+    terminal.write(" " * (2 * MOST_WAITING))
+    read = b""
+
+    def took(what: bytes) -> bool:
+        nonlocal read
+        while select.select([own], [], [], 0.05)[0]:
+            read += os.read(own, 65536)
+        return what in read
+
+    wait_until(lambda: took(b"") and caught_up.is_set(), "the terminal caught up")
+    terminal.write("after")
+    wait_until(lambda: took(b"after"), "what is written next")
+    assert KITTY_ERASE_ALL.encode() in read
+    assert read.index(KITTY_ERASE_ALL.encode()) < read.index(b"after")
+    terminal.write("\x1b[2;1Hmore")
+    wait_until(lambda: took(b"more"), "what is written then")
+    assert read.count(KITTY_ERASE_ALL.encode()) == 1
 
 
 def test_leaving_a_stalled_terminal_is_bounded(line: tuple[int, int]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from textual.app import App, ComposeResult
@@ -9,7 +11,7 @@ from textual.geometry import Region
 
 from tests.waiting import until
 from tui.terminal.bandwidth import Bandwidth
-from tui.terminal.pixels import Pixels
+from tui.terminal.pixels import PICTURE, Graphics, GraphicsChanged, Pixels
 from tui.widgets.image_view import ImageView, fitting_size
 from tui.widgets.image_view import Pixels as Rgb
 
@@ -114,3 +116,57 @@ async def test_of_those_that_come_while_the_line_is_busy_the_newest_alone_is_sho
         app.bandwidth.behind = False
         await until(lambda: ground(app.view) == BLUE, "the newest picture")
         assert " of 15 Hz: the terminal is slow" in app.view.caption
+
+
+def picture_columns(view: ImageView) -> int:
+    """The width of the picture in pixels that is shown, 0 if there is none."""
+    found = PICTURE.search(row_text(view, 4))
+    return 0 if found is None else len(found[0])
+
+
+def shows(view: ImageView, columns: int) -> bool:
+    return picture_columns(view) == columns
+
+
+async def test_with_cells_of_another_size_a_still_picture_is_made_anew() -> None:
+    app = PictureApp()
+    async with app.run_test(size=(50, 9)):
+        app.view.show(plain_picture(16, 16, RED))
+        for cell, columns in (((10, 20), 16), ((10, 10), 8)):
+            app.pixels.graphics = Graphics("sixel", cell)
+            app.view.post_message(GraphicsChanged())
+            await until(partial(shows, app.view, columns), "the picture in pixels", 10)
+        app.pixels.graphics = None
+        app.view.post_message(GraphicsChanged())
+        await until(lambda: not picture_columns(app.view), "the picture in half-blocks", 10)
+
+
+async def test_a_picture_shown_after_words_while_another_is_on_its_way_into_pixels_is_shown() -> None:
+    app = PictureApp()
+    app.pixels.graphics = Graphics("sixel", (10, 20))
+    async with app.run_test(size=(50, 9)):
+        app.view.show(plain_picture(16, 16, RED))
+        app.view.show_words("nothing")
+        app.view.show(plain_picture(16, 16, BLUE))
+        await until(lambda: picture_columns(app.view), "the picture in pixels")
+
+
+async def test_pictures_that_come_while_one_is_on_its_way_into_pixels_count_as_left_out() -> None:
+    app = PictureApp()
+    app.pixels.graphics = Graphics("sixel", (10, 20))
+    async with app.run_test(size=(50, 9)):
+        for color in (RED, BLUE, RED):
+            app.view.show(plain_picture(16, 16, color), "rgb8", hz="15")
+        await until(lambda: " of 15 Hz" in app.view.caption, "the caption")
+
+
+async def test_a_picture_in_pixels_waits_for_what_was_sent_while_it_was_made() -> None:
+    app = PictureApp()
+    app.pixels.graphics = Graphics("sixel", (10, 20))
+    async with app.run_test(size=(50, 9)) as pilot:
+        app.view.show(plain_picture(16, 16, RED))
+        app.bandwidth.behind = True
+        await pilot.pause(0.3)
+        assert not picture_columns(app.view)
+        app.bandwidth.behind = False
+        await until(lambda: picture_columns(app.view), "the picture in pixels", 10)

@@ -5,7 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tui.terminal.pixels import FIRST, Graphics, PixelPicture, Pixels, are_wanted, encoded, graphics_of
+from tui.terminal.pixels import (
+    FIRST,
+    Graphics,
+    PixelPicture,
+    Pixels,
+    are_wanted,
+    encoded,
+    graphics_of,
+    in_multiplexer,
+    most_bytes,
+)
 from tui.terminal.terminal_diff import TerminalDiff
 from tui.widgets.canvas import Canvas
 from tui.widgets.drawing import LOOKS
@@ -46,6 +56,14 @@ def test_over_a_limited_line_they_are_asked_for_only_on_request(wish: str, limit
     assert are_wanted(wish, limit) is wanted
 
 
+@pytest.mark.parametrize(
+    ("env", "is_one"),
+    [({"TMUX": "/x"}, True), ({"STY": "1.x"}, True), ({"TERM": "tmux-256color"}, True), ({"TERM": "foot"}, False)],
+)
+def test_in_a_multiplexer_kittys_question_would_be_a_title(env: dict[str, str], is_one: bool) -> None:
+    assert in_multiplexer(env) is is_one
+
+
 @pytest.mark.parametrize("size", [1, 2, 7, 1000])
 def test_keys_between_answers_are_kept_however_it_comes_in_pieces(size: int) -> None:
     pixels = Pixels(wanted=True)
@@ -54,6 +72,30 @@ def test_keys_between_answers_are_kept_however_it_comes_in_pieces(size: int) -> 
     keys = "".join(pixels.sift(typed[at : at + size]) for at in range(0, len(typed), size))
     assert keys == "a  \x1b[A\x1b[?2026;2$y\x1bb z"
     assert pixels.graphics == Graphics("sixel", (10, 20))
+
+
+def test_with_two_questions_open_both_answers_are_taken_and_none_is_typed() -> None:
+    pixels = Pixels(wanted=True)
+    pixels.asked()
+    assert pixels.sift(f"{KITTY}{CELL}") == ""
+    pixels.asked()
+    assert pixels.sift("\x1b[?62;c") == ""
+    assert pixels.graphics == Graphics("kitty", (10, 20))
+    assert pixels.sift(f"{KITTY}\x1b[6;40;20t\x1b[?62;ca") == "a"
+    assert pixels.graphics == Graphics("kitty", (20, 40))
+    assert pixels.sift(KITTY) == KITTY
+
+
+def test_with_cells_of_another_size_there_are_no_pixels_until_the_terminal_has_answered() -> None:
+    pixels = Pixels(wanted=True)
+    pixels.asked((10, 20))
+    pixels.sift("\x1b[?62;4c")
+    pixels.asked((10, 20))
+    assert pixels.graphics == Graphics("sixel", (10, 20))
+    pixels.asked((12, 24))
+    assert [pixels.graphics] == [None]
+    pixels.sift(2 * "\x1b[?62;4c")
+    assert pixels.graphics == Graphics("sixel", (12, 24))
 
 
 def test_without_a_question_nothing_is_taken_for_an_answer() -> None:
@@ -91,6 +133,16 @@ def test_a_picture_is_drawn_when_all_of_it_shows_and_in_half_blocks_when_somethi
     assert "▀" not in left
 
 
+def test_text_of_uncertain_width_left_of_a_picture_does_not_erase_it() -> None:
+    diff = TerminalDiff({ONE: picture(ONE)})
+    diff.forget(10, 5)
+    diff.changes(cells(ONE))
+    beside = diff.changes("\x1b[2;1H\u0e01")
+    assert "<erased>" not in beside
+    assert "<0>" in beside
+    assert "<erased>" in diff.changes("\x1b[2;2H界")
+
+
 def test_a_picture_in_the_last_row_is_not_drawn_in_pixels_as_the_screen_would_scroll() -> None:
     diff = TerminalDiff({ONE: picture(ONE)})
     diff.forget(10, 3)
@@ -115,6 +167,9 @@ async def test_noise_that_would_fill_the_line_is_not_sent() -> None:
     pixels, halves = Pixels(graphics=Graphics("sixel", (10, 20))), np.zeros((50, 80, 3), np.uint8)
     assert await pixels.made(noise, halves) is None
     assert await pixels.made(noise // 255, halves) is not None
+    pixels.most_bytes = most_bytes(100)
+    assert await pixels.made(noise // 255, halves) is None
+    assert most_bytes(0) == most_bytes(1_000_000) > most_bytes(40_000)
 
 
 def test_each_dot_of_a_canvas_in_pixels_has_its_own_colour_and_a_sign_is_a_spot() -> None:
