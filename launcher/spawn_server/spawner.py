@@ -59,15 +59,21 @@ class _Server:
         self._on_answer, self._on_end = on_answer, on_end
         asyncio.get_running_loop().add_reader(handle.link, self._read)
 
-    def tell(self, message: dict[str, object], fds: Sequence[int]) -> None:
-        """Send a message, with copies of descriptors; raises OSError if there is no room for them."""
+    def told(self, message: dict[str, object], fds: Sequence[int]) -> bool:
+        """Send a message, with copies of descriptors; return False if there is no room for it now."""
         # In a memory file, as a packet is limited to some 200 kB, less than a command line may need.
         with os.fdopen(os.memfd_create("deck message"), "wb") as file:
             file.write(json.dumps(message).encode())
             file.flush()
-            # If it is dead, the reading side will notice after its last answers.
-            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
-                socket.send_fds(self.handle.link, [b"."], [file.fileno(), *fds])
+            try:
+                # If it is dead, the reading side will notice after its last answers.
+                with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                    socket.send_fds(self.handle.link, [b"."], [file.fileno(), *fds])
+            except OSError as problem:
+                if problem.errno not in (errno.EAGAIN, errno.ETOOMANYREFS):
+                    raise
+                return False
+        return True
 
     def kill(self, *, hung: bool = False) -> None:
         """Kill the server; answers that it has already sent are still read."""
@@ -146,7 +152,11 @@ class Spawner:
         future: asyncio.Future[SpawnedProcess | None] = asyncio.get_running_loop().create_future()
         self._pending[request_id] = future
         try:
-            await self._say(server, {"id": request_id, **vars(request)}, fds)
+            # A server that imports something reads nothing meanwhile, and one that has ended never will.
+            until_s = time.monotonic() + self._answer_within_s
+            message = {"id": request_id, **vars(request)}
+            while not (future.done() or server.told(message, fds) or time.monotonic() > until_s):
+                await asyncio.wait([future], timeout=ROOM_EVERY_S)
             await asyncio.wait([future], timeout=self._answer_within_s)
             if not future.done():
                 server.kill(hung=True)
@@ -162,17 +172,6 @@ class Spawner:
         if not future.done():
             raise SpawnError(say("the spawn server does not answer"))
         return future.result()
-
-    async def _say(self, server: _Server, message: dict[str, object], fds: Sequence[int]) -> None:
-        """Send it once there is room: a server that imports something reads nothing meanwhile."""
-        until_s = time.monotonic() + self._answer_within_s
-        while True:
-            try:
-                return server.tell(message, fds)
-            except OSError as problem:
-                if problem.errno not in (errno.EAGAIN, errno.ETOOMANYREFS) or time.monotonic() > until_s:
-                    raise
-            await asyncio.sleep(ROOM_EVERY_S)
 
     def go_cold(self) -> None:
         """Replace the server with one that imports nothing: no node of this run needs them."""
