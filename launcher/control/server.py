@@ -50,6 +50,7 @@ STUCK_S = 30.0
 MAX_CLIENTS = 64
 GREETED_WITHIN_S = 10.0
 """A connection that says nothing makes room for others after this time."""
+MAX_REQUESTS = 100
 
 
 class ControlServer:
@@ -153,13 +154,7 @@ class ControlServer:
         pid, uid = _peer(writer)
         # What a learner's file does in a grading is not what its teacher asks for.
         strange = uid != os.getuid() or _is_elsewhere(pid)
-        if not strange and len(self._clients) >= MAX_CLIENTS:
-            # Whoever has said nothing yet makes room for the next one.
-            silent = next((client for client in self._clients if not client.greeted), None)
-            if silent is not None:
-                del self._clients[silent]
-                silent.writer.transport.abort()
-        if strange or len(self._clients) >= MAX_CLIENTS:
+        if strange or not self._has_room():
             writer.close()
             return
         client = Client(writer, self._rings())
@@ -175,6 +170,17 @@ class ControlServer:
             self._clients.pop(client, None)
             self.consent.leave(client)
             writer.close()
+
+    def _has_room(self) -> bool:
+        """Whether one more client may connect: the first that has said nothing yet makes way."""
+        if len(self._clients) < MAX_CLIENTS:
+            return True
+        silent = next((client for client in self._clients if not client.greeted), None)
+        if silent is None:
+            return False
+        del self._clients[silent]
+        silent.writer.transport.abort()
+        return True
 
     async def _converse(self, client: Client, reader: asyncio.StreamReader) -> None:
         while True:
@@ -271,6 +277,9 @@ class Client:
 
     def begin(self, serving: Coroutine[Any, Any, None]) -> None:
         """Serve a request alongside the others: stopping a node takes time."""
+        if len(self._requests) >= MAX_REQUESTS:
+            serving.close()
+            raise BadRequestError(say("too many requests at once"))
         task = asyncio.create_task(serving)
         self._requests.add(task)
         task.add_done_callback(self._requests.discard)
