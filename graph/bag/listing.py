@@ -79,8 +79,10 @@ def _counted(file: Path) -> int | None:
     """
     kind = files.storage_of(file)
     if kind == files.MCAP:
+        from mcap.reader import SeekingReader
+
         with file.open("rb") as opened:
-            summary = summary_of(opened)
+            summary = summary_of(SeekingReader(opened))
         return summary.statistics.message_count if summary and summary.statistics else None
     if kind != files.SQLITE or files.beside_database(file):
         return None

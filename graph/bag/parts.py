@@ -9,7 +9,7 @@ import heapq
 import sys
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from operator import itemgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -27,6 +27,7 @@ else:
     from backports import zstd
 
 if TYPE_CHECKING:
+    from mcap.reader import SeekingReader
     from mcap.records import Channel as ChannelRecord
     from mcap.records import McapRecord, Schema
     from mcap.summary import Summary
@@ -200,9 +201,7 @@ class McapPart:
         """Unix time of the last message before the place where it has turned out to be damaged."""
         self._content = content
         self._reader = SeekingReader(stack.enter_context(content.open("rb")), validate_crcs=True)
-        summary = None
-        with suppress(Exception):  # whatever is wrong with it, the file itself tells
-            summary = self._reader.get_summary()
+        summary = summary_of(self._reader)
         facts = summary.statistics if summary else None
         self.said = facts.message_count if facts else None
         """How many messages it holds by its own count, None if it keeps none."""
@@ -321,12 +320,10 @@ def _of(stretch: Stretch, stream: BinaryIO) -> Iterator[Found]:
 BagPart: TypeAlias = "McapPart | SqlitePart"
 
 
-def summary_of(stream: BinaryIO) -> Summary | None:
+def summary_of(reader: SeekingReader) -> Summary | None:
     """Return what an MCAP file says of itself at its end, None if nothing or if that is damaged."""
-    from mcap.reader import SeekingReader
-
     try:
-        return SeekingReader(stream).get_summary()
+        return reader.get_summary()
     except Exception:  # noqa: BLE001 - whatever is wrong with it, the file itself tells
         return None
 
