@@ -7,6 +7,7 @@ text, and changes caused by a key, are sent at once.
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from collections import deque
 from typing import TYPE_CHECKING, Protocol
@@ -70,6 +71,11 @@ class Bandwidth:
             self.is_slow = True
             return AGAIN_S
         return 0.0
+
+    async def free(self) -> None:
+        """Return once a picture may be sent."""
+        while wait_s := self.wait_s():  # noqa: ASYNC110 - it says when
+            await asyncio.sleep(wait_s)
 
     def _save(self) -> None:
         now_s = self._clock()

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rich.cells import cell_len
 
-from tui.terminal.pixels import KITTY_ERASE_ALL, PICTURE, PixelPicture
+from tui.terminal.pixels import FIRST, KITTY_ERASE_ALL, LAST, PICTURE, PixelPicture
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _TOKENS = re.compile(
-    r"\x1b\[(?P<place>[\d;]*)H|\x1b\[(?P<sgr>[\d;]*)m|(?P<picture>[\U00100000-\U0010fffd]+)"
-    r"|(?P<text>[^\x00-\x1f\x7f\U00100000-\U0010fffd]+)|(?P<line>\n)"
+    rf"\x1b\[(?P<place>[\d;]*)H|\x1b\[(?P<sgr>[\d;]*)m|(?P<picture>{PICTURE.pattern})"
+    rf"|(?P<text>[^\x00-\x1f\x7f{chr(FIRST)}-{chr(LAST)}]+)|(?P<line>\n)"
     r"|(?P<other>\x1b\[[?>=<]?[\d;]*[ $]?[@-~]|\x1b[^\[]|.)",
     re.DOTALL,
 )

@@ -248,8 +248,7 @@ class ImageView(OneStyle, Widget):
         try:
             made = await self._host.pixels.made(picture.rgb, halves)
             # Another picture may have been sent meanwhile.
-            while self._encoding is halves and (wait_s := self._host.bandwidth.wait_s()):  # noqa: ASYNC110 - it says when
-                await asyncio.sleep(wait_s)
+            await self._host.bandwidth.free()
         finally:
             is_wanted = self._encoding is halves
             if is_wanted:

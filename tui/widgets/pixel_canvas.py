@@ -76,15 +76,13 @@ class PixelCanvas:
         """Make pictures until the newest one is shown."""
         try:
             while self._wanted is not None:
-                await asyncio.sleep(max(PERIOD_S, self._host.bandwidth.wait_s()))
-                if self._host.bandwidth.wait_s():
-                    continue
+                await asyncio.sleep(PERIOD_S)
+                await self._host.bandwidth.free()
                 self._shown, self._wanted = self._wanted, None
                 height, width = self._shown.shape[:2]
                 halves = shrink(self._shown, width // (2 * FINER), height // (2 * FINER))
                 graphics, made = self._host.pixels.graphics, await self._host.pixels.made(self._shown, halves)
-                while wait_s := self._host.bandwidth.wait_s():  # noqa: ASYNC110 - it says when
-                    await asyncio.sleep(wait_s)
+                await self._host.bandwidth.free()
                 self._picture = made if graphics == self._host.pixels.graphics else None
                 self._drawing.redraw()
         finally:
