@@ -9,62 +9,35 @@ import os
 import sys
 import threading
 
-from textual.app import App
-from textual.events import Key
+from textual.app import ComposeResult
 from textual.widgets import Static
 
+from tests.tui.terminal.terminal_app import TerminalApp
 from tui.terminal import hang_up
-from tui.terminal.bandwidth import Bandwidth
-from tui.terminal.driver import DeckDriver
 from tui.terminal.pixels import Pixels
 
 
-class StuckApp(App[int]):
+class StuckApp(TerminalApp):
     """Hangs once `h` is pressed."""
 
-    terminal_fd = 1
-
     def __init__(self, how: str, file: str) -> None:
-        super().__init__(driver_class=DeckDriver)
+        super().__init__(file, Pixels())
         self._how = how
-        self._file = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-        self.bandwidth = Bandwidth()
-        self.pixels = Pixels()
-        self.stopped_s = 0.0
 
-    def compose(self):  # type: ignore[no-untyped-def]  # noqa: ANN201
+    def compose(self) -> ComposeResult:
         yield Static("ready")
 
-    def on_ready(self) -> None:
-        self._write("ready")
-
-    def on_key(self, event: Key) -> None:
-        self._write(f"key {event.key}")
-        if event.key == "h":
+    def obey(self, key: str) -> None:
+        if key == "h":
             HANGS[self._how]()
 
     def on_paste(self) -> None:
-        self._write("paste")
+        self.write("paste")
 
     def is_stop(self, key: str) -> bool:
         if key == "b" and self._how == "blind":
             raise RuntimeError(key)
-        return key in {"space", "ctrl+x"}
-
-    def stop_wheels(self) -> None:
-        self._write("stop")
-
-    def terminal_lost(self) -> None:
-        self._write("lost")
-
-    def tell_unread(self, sequence: str) -> None:
-        self._write(f"unread {sequence!r}")
-
-    def keyboard_lost(self, error: Exception) -> None:
-        self._write(f"keyboard lost: {error!r}")
-
-    def _write(self, words: str) -> None:
-        os.write(self._file, f"{words}\n".encode())
+        return super().is_stop(key)
 
 
 def _deadlock() -> None:
