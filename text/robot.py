@@ -45,7 +45,7 @@ class Robot:
     """One robot; a field that it does not give is empty."""
 
     roles: Mapping[str, tuple[Role, ...]] = field(default_factory=dict)
-    """Of its nodes, by their modules; a profile may say others."""
+    """Of its nodes, by their modules; a profile may add others."""
     panels: Mapping[str, PanelEntry] = field(default_factory=dict)
     """In the order in which they are shown."""
     words: str = ""
